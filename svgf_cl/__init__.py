@@ -1,0 +1,8 @@
+"""svgf_cl: a denoiser for path-traced animation that runs on any OpenCL device."""
+
+from svgf_cl.errors import DeviceError, FrameError, SequenceError, SettingsError, SvgfError
+from svgf_cl.frame import Frame
+from svgf_cl.settings import Settings
+
+__all__ = ["DeviceError", "Frame", "FrameError", "SequenceError", "Settings", "SettingsError", "SvgfError"]
+__version__ = "0.1.0"

@@ -1,0 +1,25 @@
+"""The errors a user can meet. Every message says what was expected, what came, and what to do next."""
+
+
+class SvgfError(ValueError):
+    """Base of every error that svgf_cl and its tracer raise on purpose; the command line prints it and exits with 2."""
+
+
+class FrameError(SvgfError):
+    """A frame's field is missing, of the wrong shape or of the wrong type."""
+
+    def __init__(self, field: str, expected: str, got: str) -> None:
+        super().__init__(f"Frame.{field}: expected {expected}, got {got}")
+        self.field = field
+
+
+class SettingsError(SvgfError):
+    """A setting is out of its range."""
+
+
+class DeviceError(SvgfError):
+    """No OpenCL device works, or a kernel does not build on the one in use."""
+
+
+class SequenceError(SvgfError):
+    """A file of a sequence is missing, unreadable or does not fit the others."""

@@ -1,0 +1,107 @@
+"""`Frame`: what a renderer hands over for one image. Shapes and meanings are fixed in docs/conventions.md."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from svgf_cl.errors import FrameError
+
+Shape = tuple[int, int]
+
+# Number of channels each field may have; 0 stands for a plain (H, W) array.
+CHANNELS: dict[str, tuple[int, ...]] = {
+    "color": (3,),
+    "albedo": (3,),
+    "normal": (3,),
+    "depth": (0,),
+    "motion": (2, 3),
+    "id": (0,),
+    "emission": (3,),
+    "direct": (3,),
+    "indirect": (3,),
+}
+REQUIRED = ("normal", "depth", "motion")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Frame:
+    """One noisy image with its G-buffer.
+
+    Every field is a `numpy.ndarray` or a `pyopencl.array.Array`, row 0 on top, x to the right, y down.
+
+    Parameters
+    ----------
+    color : (H, W, 3) float32, optional
+        Linear HDR radiance, scene-referred. May be left out where `direct` and `indirect` are both given.
+    normal : (H, W, 3) float32
+        World-space unit shading normal; 0 where nothing was hit.
+    depth : (H, W) float32
+        View-space distance along the camera's axis in scene units, > 0; inf where nothing was hit.
+    motion : (H, W, 2) or (H, W, 3) float32
+        Previous minus current position in pixels, without sub-pixel jitter: ``p_prev = p + motion``. A third
+        component is the expected previous depth minus the current depth, in scene units.
+    albedo : (H, W, 3) float32, optional
+        Linear, 0..1; 1 where absent.
+    id : (H, W) uint32, optional
+        Instance id; 0 where nothing was hit.
+    emission : (H, W, 3) float32, optional
+        Directly visible emission (a lamp, the sky) inside `color`; it is passed through unfiltered.
+    direct, indirect : (H, W, 3) float32, optional
+        Reflected radiance split in two signals that are filtered apart; both or neither.
+        ``color = direct + indirect + emission``, and `color` is not read.
+    """
+
+    color: Any = None
+    normal: Any = None
+    depth: Any = None
+    motion: Any = None
+    albedo: Any = None
+    id: Any = None
+    emission: Any = None
+    direct: Any = None
+    indirect: Any = None
+
+    def present(self) -> dict[str, Any]:
+        """The fields that were given, by name, in the order of `CHANNELS`."""
+        return {f.name: value for f in fields(self) if (value := getattr(self, f.name)) is not None}
+
+    @property
+    def shape(self) -> Shape:
+        """(height, width), read from `depth`."""
+        self.check_presence()
+        shape = np.shape(self.depth)
+        if len(shape) != 2:
+            raise FrameError("depth", "an array of shape (H, W)", f"shape {shape}")
+        return int(shape[0]), int(shape[1])
+
+    def check(self, shape: Shape) -> None:
+        """Raise `FrameError` unless every field is there, of this (height, width), and of a usable type."""
+        self.check_presence()
+        for name, value in self.present().items():
+            check_field(name, value, shape)
+
+    def check_presence(self) -> None:
+        """Raise `FrameError` where a required field, or one half of a pair, is missing."""
+        for name in REQUIRED:
+            if getattr(self, name) is None:
+                raise FrameError(name, "an array", "nothing")
+        if (self.direct is None) != (self.indirect is None):
+            missing = "direct" if self.direct is None else "indirect"
+            raise FrameError(missing, "both of direct and indirect, or neither", "nothing")
+        if self.color is None and self.direct is None:
+            raise FrameError("color", "an array (or direct and indirect in its place)", "nothing")
+
+
+def check_field(name: str, value: Any, shape: Shape) -> None:
+    """Raise `FrameError` unless `value` can be field `name` of a frame of this (height, width)."""
+    if not (hasattr(value, "shape") and hasattr(value, "dtype")):
+        raise FrameError(name, "a numpy.ndarray or pyopencl.array.Array", type(value).__name__)
+    allowed = [shape + ((channels,) if channels else ()) for channels in CHANNELS[name]]
+    if tuple(value.shape) not in allowed:
+        raise FrameError(name, "shape " + " or ".join(map(str, allowed)), f"shape {tuple(value.shape)}")
+    kinds, wanted = ("ui", "integers (uint32)") if name == "id" else ("f", "floating point (float32)")
+    if np.dtype(value.dtype).kind not in kinds:
+        raise FrameError(name, wanted, f"dtype {value.dtype}")

@@ -1,0 +1,83 @@
+"""`Settings`: everything a user can tune, each with its unit, range, default and the reason for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from numbers import Real
+
+from svgf_cl.errors import SettingsError
+
+# (least, greatest) allowed value of each numeric setting.
+RANGES: dict[str, tuple[float, float]] = {
+    "iterations": (1, 5),
+    "sigma_depth": (1e-3, 1e3),
+    "sigma_normal": (1, 1024),
+    "sigma_luminance": (1e-3, 1e3),
+    "depth_slope_floor": (1e-6, 1.0),
+    "alpha_color": (0.0, 1.0),
+    "alpha_moments": (0.0, 1.0),
+    "depth_threshold": (0.0, 1.0),
+    "normal_threshold": (-1.0, 1.0),
+    "alpha_taa": (0.0, 1.0),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """Parameters of the filter. Equations: docs/algorithm.md.
+
+    Parameters
+    ----------
+    iterations : int, levels, 1..5
+        A-trous levels; each doubles the filter's reach. 5 as in the paper (section 4.3): 61 pixels wide... wide enough for 1 spp.
+    sigma_depth : float, 1e-3..1e3
+        Tolerated depth difference in units of the surface's own slope. 1 as in the paper (section 4.4).
+    sigma_normal : int, power of two, 1..1024
+        Exponent of the normals' cosine. 128 as in the paper; a power of two because the kernel squares repeatedly.
+    sigma_luminance : float, standard deviations, 1e-3..1e3
+        Tolerated luminance difference. 4 as in the paper.
+    depth_slope_floor : float, depth per depth and pixel, 1e-6..1
+        Least slope that still counts as one surface; keeps walls that face the camera from being cut by rounding.
+    alpha_color, alpha_moments : float, 0..1
+        Least share of the new frame in the accumulated colour and luminance moments. 0.2 as in the paper (section 4.1);
+        0 averages for ever, for a static view under constant light.
+    depth_threshold : float, relative to depth, 0..1
+        Reprojection: how far a tap may lie off the expected depth, beside one pixel of the surface's slope.
+    normal_threshold : float, cosine, -1..1
+        Reprojection: least cosine between the normals of pixel and tap.
+    taa : bool
+        Temporal antialiasing after the filter; off, because a renderer often has its own.
+    alpha_taa : float, 0..1
+        Share of the new frame in the antialiased picture.
+    """
+
+    iterations: int = 5
+    sigma_depth: float = 1.0
+    sigma_normal: int = 128
+    sigma_luminance: float = 4.0
+    depth_slope_floor: float = 1e-3
+    alpha_color: float = 0.2
+    alpha_moments: float = 0.2
+    depth_threshold: float = 0.02
+    normal_threshold: float = 0.9
+    taa: bool = False
+    alpha_taa: float = 0.1
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.name in RANGES:
+                check_number(field.name, value, whole=isinstance(field.default, int))
+            elif not isinstance(value, bool):
+                raise SettingsError(f"Settings.{field.name}: expected True or False, got {value!r}")
+        if self.sigma_normal & (self.sigma_normal - 1):
+            raise SettingsError(f"Settings.sigma_normal: expected a power of two, got {self.sigma_normal}")
+
+
+def check_number(name: str, value: object, *, whole: bool) -> None:
+    """Raise `SettingsError` unless `value` is a number (a whole one where asked) within the setting's range."""
+    low, high = RANGES[name]
+    kind = "a whole number" if whole else "a number"
+    number = isinstance(value, int if whole else Real) and not isinstance(value, bool)
+    if not number or not low <= value <= high:  # type: ignore[operator]
+        raise SettingsError(f"Settings.{name}: expected {kind} in {low:g}..{high:g}, got {value!r}")
