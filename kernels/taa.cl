@@ -1,0 +1,74 @@
+// Temporal antialiasing after tone mapping, back to linear HDR at the end.
+//
+//   t = YCoCg(out / (1 + l(out))),  h = clamp(history at p + motion, min 3x3 t, max 3x3 t),  t := h + alpha (t - h)
+//
+// in   motion, modulated colour, history (YCoCg, tone mapped)
+// out  next history; out: the user's (H, W, 3) array, linear HDR
+// Schied et al. 2017, section 5; Karis, High-Quality Temporal Supersampling, 2014. Tone mapping comes first so that one
+// bright sample cannot outweigh its neighbours.
+
+typedef struct {
+    floatv channel[3];  // Y, Co, Cg
+} Tone;
+
+inline Tone tone_map(const int4 size, int i, __global const float *color) {
+    floatv c[3];
+    for (int k = 0; k < 3; ++k) c[k] = load(color + k * size.w + i);
+    const floatv scale = 1.0f / (1.0f + luminance(c[0], c[1], c[2]));
+    for (int k = 0; k < 3; ++k) c[k] *= scale;
+    Tone t;
+    t.channel[0] = 0.25f * c[0] + 0.5f * c[1] + 0.25f * c[2];
+    t.channel[1] = 0.5f * c[0] - 0.5f * c[2];
+    t.channel[2] = -0.25f * c[0] + 0.5f * c[1] - 0.25f * c[2];
+    return t;
+}
+
+__kernel void taa(const int4 size, const float alpha_taa, __global const float *restrict motion,
+                  __global const float *restrict color, __global const float *restrict history,
+                  __global float *restrict next_history, __global float *restrict out) {
+    const int x = first_column(), y = row();
+    if (x >= size.x) return;
+    const int here = at(size, x, y);
+    const intv i = interleaved(size, x, y, MOTION);
+    const floatv px = to_float(x + LANES) + gather(motion, i), py = to_float((intv)(y)) + gather(motion, i + 1);
+    const float right = (float)size.x - 0.5f, bottom = (float)size.y - 0.5f;
+    const intv seen = (px >= -0.5f) & (px < right) & (py >= -0.5f) & (py < bottom);  // false for NaN
+
+    const Tone now = tone_map(size, here, color);
+    Tone low = now, high = now;
+    for (int dy = -1; dy <= 1; ++dy) {
+        if (y + dy < 0 || y + dy >= size.y) continue;
+        for (int dx = -1; dx <= 1; ++dx) {
+            const Tone t = tone_map(size, here + dy * size.z + dx, color);
+            const intv inside = (x + dx + LANES >= 0) & (x + dx + LANES < size.x);
+            for (int k = 0; k < 3; ++k) {
+                low.channel[k] = where(inside, min(low.channel[k], t.channel[k]), low.channel[k]);
+                high.channel[k] = where(inside, max(high.channel[k], t.channel[k]), high.channel[k]);
+            }
+        }
+    }
+
+    const floatv sx = where(seen, px, (floatv)(0.0f)), sy = where(seen, py, (floatv)(0.0f));
+    const floatv fx = sx - floor(sx), fy = sy - floor(sy);
+    const intv left = to_int(floor(sx)), top = to_int(floor(sy));
+    Tone h;
+    for (int k = 0; k < 3; ++k) h.channel[k] = (floatv)(0.0f);
+    for (int t = 0; t < 4; ++t) {
+        const floatv w = (t & 1 ? fx : 1.0f - fx) * (t & 2 ? fy : 1.0f - fy);
+        const intv tap = at_lanes(size, clamp(left + (t & 1), 0, size.x - 1), clamp(top + (t >> 1), 0, size.y - 1));
+        for (int k = 0; k < 3; ++k) h.channel[k] += w * gather(history + k * size.w, tap);
+    }
+
+    const floatv alpha = where(seen, (floatv)(alpha_taa), (floatv)(1.0f));
+    Tone t;
+    for (int k = 0; k < 3; ++k) {
+        const floatv kept = clamp(h.channel[k], low.channel[k], high.channel[k]);
+        t.channel[k] = kept + alpha * (now.channel[k] - kept);
+        store(where(x + LANES < size.x, t.channel[k], (floatv)(0.0f)), next_history + k * size.w + here);
+    }
+    const floatv base = t.channel[0] - t.channel[2];
+    const floatv rgb[3] = {base + t.channel[1], t.channel[0] + t.channel[2], base - t.channel[1]};
+    const floatv scale = 1.0f / max(1.0f - luminance(rgb[0], rgb[1], rgb[2]), (floatv)(1e-6f));
+    for (int k = 0; k < 3; ++k)
+        scatter(max(rgb[k] * scale, (floatv)(0.0f)), size, x, y, k, out);
+}

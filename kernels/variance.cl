@@ -1,0 +1,76 @@
+// Variance of luminance: temporal where history is long enough, else estimated over space.
+//
+//   N >= 4:  Var = V
+//   else:    M~ = sum w M / sum w,  Var = 4 / N * sum w (V + (M - M~)^2) / sum w,  over 7x7,  w = w_z w_n
+//
+// in   guide; moments: N, then M and V of each signal
+// out  illumination: its variance plane(s)
+// Schied et al. 2017, section 4.2; the weights are those of the a-trous filter without luminance.
+
+#define LONG_HISTORY 4.0f
+#define RADIUS 3
+
+typedef struct {
+    floatv weight, first[SIGNALS], second[SIGNALS];  // sums of w, w (M - M(p)), w (V + (M - M(p))^2)
+} Moments;
+
+inline void add_tap(Moments *sum, floatv w, const int4 size, int tap, const floatv *centre, __global const float *moments) {
+    sum->weight += w;
+    for (int s = 0; s < SIGNALS; ++s) {
+        __global const float *mean = moments + (MOMENTS + 2 * s) * size.w;
+        const floatv off = load(mean + tap) - centre[s];
+        sum->first[s] += w * off;
+        sum->second[s] += w * (load(mean + size.w + tap) + off * off);
+    }
+}
+
+// Sums over the neighbourhood. They are taken about the centre's own mean: the centre is one of the samples, so the
+// variance is never small against the shift and the difference does not cancel.
+inline Moments neighbourhood(const int4 size, int here, float sigma_depth, float slope_floor, const floatv *centre,
+                             __global const float *guide, __global const float *moments) {
+    __global const float *depth = guide + DEPTH * size.w;
+    const floatv z = load(depth + here);
+    const Gradient g = depth_gradient(depth, size.z, here);
+    Moments sum;
+    sum.weight = (floatv)(0.0f);
+    for (int s = 0; s < SIGNALS; ++s) sum.first[s] = sum.second[s] = (floatv)(0.0f);
+    for (int dy = -RADIUS; dy <= RADIUS; ++dy) {
+        for (int dx = -RADIUS; dx <= RADIUS; ++dx) {
+            const int tap = here + dy * size.z + dx;
+            const floatv scale = depth_scale(g, z, sigma_depth, slope_floor, (float)dx, (float)dy);
+            floatv cosine = (floatv)(0.0f);
+            for (int k = 0; k < 3; ++k)
+                cosine += load(guide + (NORMAL + k) * size.w + here) * load(guide + (NORMAL + k) * size.w + tap);
+            floatv w = normal_weight(cosine) * exp_minus(fabs(z - load(depth + tap)) * scale);
+            if (dx == 0 && dy == 0) w = (floatv)(1.0f);
+            add_tap(&sum, w, size, tap, centre, moments);
+        }
+    }
+    return sum;
+}
+
+__kernel void variance(const int4 size, const float sigma_depth, const float depth_slope_floor,
+                       __global const float *restrict guide, __global const float *restrict moments,
+                       __global float *restrict illumination) {
+    const int x = first_column(), y = row();
+    if (x >= size.x) return;
+    const int here = at(size, x, y);
+    const floatv length = load(moments + LENGTH * size.w + here);
+    const intv brief = (length > 0.0f) & (length < LONG_HISTORY);
+    floatv centre[SIGNALS], result[SIGNALS];
+    for (int s = 0; s < SIGNALS; ++s) {
+        centre[s] = load(moments + (MOMENTS + 2 * s) * size.w + here);
+        result[s] = load(moments + (MOMENTS + 2 * s + 1) * size.w + here);
+    }
+    if (any_lane(brief)) {
+        const Moments sum = neighbourhood(size, here, sigma_depth, depth_slope_floor, centre, guide, moments);
+        const floatv boost = LONG_HISTORY / max(length, (floatv)(1.0f));
+        for (int s = 0; s < SIGNALS; ++s) {
+            const floatv off = sum.first[s] / sum.weight;
+            const floatv spatial = max(sum.second[s] / sum.weight - off * off, (floatv)(0.0f));
+            result[s] = where(brief, boost * spatial, result[s]);
+        }
+    }
+    for (int s = 0; s < SIGNALS; ++s)
+        store(where(length > 0.0f, result[s], (floatv)(0.0f)), illumination + (VARIANCE + s) * size.w + here);
+}
