@@ -1,0 +1,83 @@
+"""How far a picture is from its reference: PSNR and SSIM of what is shown, relMSE of the light itself.
+
+======  ==================  ==========================================================================================
+metric  computed on         definition
+======  ==================  ==========================================================================================
+PSNR    display-referred    ``-10 log10(mean((a - b)**2))`` over all pixels and channels, in dB; inf where equal
+SSIM    display-referred    mean structural similarity of the channels, Gaussian window of sigma 1.5, as in Wang et al.
+                            2004 (scikit-image's ``structural_similarity``); 1 where equal
+relMSE  linear HDR          ``mean((a - b)**2 / (b**2 + 0.01))``, `b` the reference, as in Rousselle et al. 2011; 0 where
+                            equal; one bright dot can outweigh all else
+======  ==================  ==========================================================================================
+
+Display-referred: exposed, clipped to 0..1 and sRGB-encoded (`svgf_cl.pictures.display`). NaN in a picture makes its
+metrics NaN.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import astuple, dataclass
+
+import numpy as np
+
+from svgf_cl.errors import SvgfError
+from svgf_cl.pictures import Linear, display
+
+# Least extent of a picture that scikit-image's Gaussian window of sigma 1.5 fits in.
+SSIM_WINDOW = 11
+
+
+@dataclass(frozen=True)
+class Metrics:
+    """PSNR in dB, SSIM and relMSE of one picture against its reference."""
+
+    psnr: float
+    ssim: float
+    relmse: float
+
+
+def measure(picture: Linear, reference: Linear, exposure: float = 0.0) -> Metrics:
+    """Compare two (H, W, 3) linear HDR pictures; `exposure` in stops applies to PSNR and SSIM.
+
+    Raises
+    ------
+    SvgfError
+        Where the sizes differ, or are too small for SSIM.
+    """
+    if picture.shape != reference.shape:
+        raise SvgfError(f"expected two pictures of one shape, got {picture.shape} and {reference.shape}")
+    shown, wanted = display(picture, exposure), display(reference, exposure)
+    return Metrics(psnr(shown, wanted), ssim(shown, wanted), relmse(picture, reference))
+
+
+def mean(metrics: Sequence[Metrics]) -> Metrics:
+    """The mean of each metric over frames; that of PSNR is the mean of its decibels."""
+    return Metrics(*np.mean([astuple(m) for m in metrics], axis=0).tolist())
+
+
+def psnr(shown: Linear, wanted: Linear) -> float:
+    """Peak signal-to-noise ratio of two display-referred pictures in dB, peak 1."""
+    error = float(np.mean(np.square(shown - wanted)))
+    return float(-10 * np.log10(error)) if error else float("inf")
+
+
+def ssim(shown: Linear, wanted: Linear) -> float:
+    """Mean structural similarity of two display-referred pictures."""
+    if min(shown.shape[:2]) < SSIM_WINDOW:
+        height, width, _ = shown.shape
+        raise SvgfError(f"SSIM: expected pictures of at least {SSIM_WINDOW}x{SSIM_WINDOW} pixels, got {width}x{height}")
+    try:
+        from skimage.metrics import structural_similarity
+    except ImportError as error:
+        raise SvgfError(f"SSIM needs scikit-image ({error}): pip install 'svgf_cl[metrics]'") from error
+    similarity = structural_similarity(
+        shown, wanted, channel_axis=-1, data_range=1.0, gaussian_weights=True, sigma=1.5, use_sample_covariance=False
+    )
+    return float(similarity)
+
+
+def relmse(picture: Linear, reference: Linear) -> float:
+    """Relative mean squared error of two linear pictures."""
+    tested, truth = np.asarray(picture, np.float64), np.asarray(reference, np.float64)
+    return float(np.mean(np.square(tested - truth) / (np.square(truth) + 0.01)))

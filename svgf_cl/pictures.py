@@ -1,0 +1,94 @@
+"""Pictures for people: tone mapping, PNG files, labelled panels side by side, and an animated preview."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image, ImageDraw, ImageFont
+
+from svgf_cl.files import written_whole
+
+Linear = npt.NDArray[np.floating]
+Bytes = npt.NDArray[np.uint8]
+
+LABEL_HEIGHT = 28
+GAP = 4
+
+
+def display(linear: Linear, exposure: float = 0.0) -> npt.NDArray[np.float64]:
+    """The display-referred picture: exposed, clipped to 0..1, encoded with the sRGB transfer curve.
+
+    Parameters
+    ----------
+    linear : (H, W, 3) float
+        Linear scene-referred radiance with Rec. 709 primaries.
+    exposure : float, stops
+        The radiance is multiplied by ``2**exposure`` first.
+
+    Returns
+    -------
+    (H, W, 3) float64
+        0..1; NaN stays NaN.
+    """
+    clipped = np.clip(np.asarray(linear, np.float64) * 2.0**exposure, 0.0, 1.0)
+    # IEC 61966-2-1.
+    return np.where(clipped <= 0.0031308, 12.92 * clipped, 1.055 * clipped ** (1 / 2.4) - 0.055)
+
+
+def to_bytes(linear: Linear, exposure: float = 0.0) -> Bytes:
+    """`display` in 8 bits; NaN becomes black."""
+    return np.rint(np.nan_to_num(display(linear, exposure)) * 255).astype(np.uint8)
+
+
+def write_png(path: Path, picture: Bytes) -> None:
+    """Write a (H, W, 3) 8-bit picture as PNG, whole or not at all."""
+    with written_whole(path) as aside:
+        Image.fromarray(picture).save(aside, format="PNG")
+
+
+def write_preview(path: Path, pictures: Iterable[Bytes], fps: float = 12.0) -> None:
+    """Write (H, W, 3) 8-bit pictures as a looping animated WebP, whole or not at all."""
+    first, *rest = (Image.fromarray(picture) for picture in pictures)
+    with written_whole(path) as aside:
+        first.save(
+            aside, format="WEBP", save_all=True, append_images=rest, duration=round(1000 / fps), loop=0, quality=80
+        )
+
+
+def side_by_side(panels: Mapping[str, Bytes]) -> Bytes:
+    """Panels of one size in a row, each with its label above it."""
+    height, width, _ = next(iter(panels.values())).shape
+    sheet = Image.new("RGB", (len(panels) * (width + GAP) - GAP, height + LABEL_HEIGHT), "black")
+    draw = ImageDraw.Draw(sheet)
+    font = ImageFont.load_default(16)
+    for index, (label, picture) in enumerate(panels.items()):
+        left = index * (width + GAP)
+        draw.text((left + width / 2, LABEL_HEIGHT / 2), label, fill="white", font=font, anchor="mm")
+        sheet.paste(Image.fromarray(picture), (left, LABEL_HEIGHT))
+    return np.asarray(sheet)
+
+
+def still(panels: Mapping[str, Bytes]) -> Bytes:
+    """Labelled panels, and below each a magnified piece of it: where the last two panels differ most."""
+    *_, (_, tested), (_, reference) = panels.items()
+    piece = worst_piece(tested, reference)
+    crops = {label: magnified(picture[piece], picture.shape) for label, picture in panels.items()}
+    gap = np.zeros_like(side_by_side(panels)[:GAP])
+    return np.concatenate([side_by_side(panels), gap, side_by_side(crops)[LABEL_HEIGHT:]])
+
+
+def worst_piece(tested: Bytes, reference: Bytes, pieces: int = 4) -> tuple[slice, slice]:
+    """The one of ``pieces * pieces`` equal tiles with the greatest squared error: the honest place to look at."""
+    height, width = (max(1, n // pieces) for n in tested.shape[:2])
+    rows, columns = (range(n // size) for n, size in zip(tested.shape, (height, width), strict=False))
+    error = np.square(tested.astype(np.float64) - reference).sum(axis=-1)
+    tiles = [np.s_[y * height : (y + 1) * height, x * width : (x + 1) * width] for y in rows for x in columns]
+    return max(tiles, key=lambda tile: float(error[tile].sum()))
+
+
+def magnified(picture: Bytes, shape: tuple[int, ...]) -> Bytes:
+    """`picture` blown up to (height, width), each pixel a crisp block."""
+    return np.asarray(Image.fromarray(picture).resize((shape[1], shape[0]), Image.Resampling.NEAREST))

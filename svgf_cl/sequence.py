@@ -1,0 +1,227 @@
+"""Frames and pictures as OpenEXR files: one file a frame, float32, lossless (zip), one named channel a component.
+
+=============  ======================================  ===================================================
+field          channels                                remarks
+=============  ======================================  ===================================================
+`color`        ``R G B``                               may be absent where `direct` and `indirect` are there
+`albedo`       ``albedo.R albedo.G albedo.B``          optional
+`normal`       ``normal.X normal.Y normal.Z``
+`depth`        ``depth.Z``                             inf where nothing was hit
+`motion`       ``motion.X motion.Y [motion.Z]``        previous minus current, pixels; Z: expected depth change
+`id`           ``id``                                  optional; whole numbers as float, exact up to 2**24
+`emission`     ``emission.R emission.G emission.B``    optional
+`direct`       ``direct.R direct.G direct.B``          optional, with `indirect`
+`indirect`     ``indirect.R indirect.G indirect.B``    optional, with `direct`
+=============  ======================================  ===================================================
+
+A plain picture (denoised, reference) has ``R G B`` alone. Frames are called ``frame.0000.exr``, references
+``reference.0000.exr``; the number is the frame's place in its sequence.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import OpenImageIO as oiio
+
+from svgf_cl.errors import FrameError, SequenceError
+from svgf_cl.files import written_whole
+from svgf_cl.frame import REQUIRED, Frame
+
+Plane = npt.NDArray[np.float32]
+
+# Channels of each field, in the order of its components; a third motion component may be missing.
+CHANNEL_NAMES: dict[str, tuple[str, ...]] = {
+    "color": ("R", "G", "B"),
+    **{name: tuple(f"{name}.{c}" for c in "RGB") for name in ("albedo", "emission", "direct", "indirect")},
+    **{name: tuple(f"{name}.{c}" for c in "XYZ") for name in ("normal", "motion")},
+    "depth": ("depth.Z",),
+    "id": ("id",),
+}
+MAX_ID = 2**24
+
+
+def frame_path(folder: Path, number: int, stem: str = "frame") -> Path:
+    """The file of frame `number` in `folder`: ``frame.0007.exr``."""
+    return folder / f"{stem}.{number:04d}.exr"
+
+
+def frame_number(path: Path) -> int | None:
+    """The number in a name like ``frame.0007.exr``; None where there is none."""
+    match = re.search(r"\.(\d+)\.exr$", path.name)
+    return int(match[1]) if match else None
+
+
+def find_numbered(folder: Path, stem: str) -> list[Path]:
+    """Every ``stem.NUMBER.exr`` in `folder`, sorted by number."""
+    name = re.compile(re.escape(stem) + r"\.(\d+)\.exr")
+    found = [(int(match[1]), path) for path in folder.iterdir() if (match := name.fullmatch(path.name))]
+    return [path for _, path in sorted(found)]
+
+
+def find_frames(paths: Iterable[Path]) -> list[Path]:
+    """Expand folders to the ``frame.NUMBER.exr`` in them, sorted by number; files stay as given.
+
+    Raises
+    ------
+    SequenceError
+        Where a path is missing or a folder holds no frame.
+    """
+    found: list[Path] = []
+    for path in paths:
+        require(path)
+        files = find_numbered(path, "frame") if path.is_dir() else [path]
+        if not files:
+            raise SequenceError(f"{path}: expected files named frame.0000.exr in this folder, found none")
+        found += files
+    return found
+
+
+def require(path: Path) -> None:
+    """Raise `SequenceError` unless there is something at `path`."""
+    if not path.exists():
+        raise SequenceError(f"{path}: expected a file or a folder, found nothing there")
+
+
+def write_frame(path: Path, frame: Frame) -> None:
+    """Write a frame of numpy arrays as one EXR file, whole or not at all.
+
+    Raises
+    ------
+    FrameError
+        Where the frame is not consistent in itself.
+    SequenceError
+        Where an id is greater than 2**24, or the file cannot be written.
+    """
+    frame.check(frame.shape)
+    planes: dict[str, Plane] = {}
+    for field, value in frame.present().items():
+        if field == "id" and value.max(initial=0) > MAX_ID:
+            raise SequenceError(f"{path}: expected ids up to {MAX_ID} (whole numbers in float32), got {value.max()}")
+        components = np.asarray(value, np.float32).reshape(*frame.shape, -1)
+        planes |= zip(CHANNEL_NAMES[field], np.moveaxis(components, -1, 0), strict=False)
+    write_channels(path, planes)
+
+
+def read_frame(path: Path) -> Frame:
+    """Read a frame that `write_frame`, or a renderer with the same channel names, wrote.
+
+    Raises
+    ------
+    SequenceError
+        Where the file is missing or not an EXR file, or where a field is absent, incomplete or of a wrong value.
+    """
+    planes = read_channels(path)
+    values = {field: value for field in CHANNEL_NAMES if (value := field_of(path, planes, field)) is not None}
+    for field in REQUIRED:
+        if field not in values:
+            raise absent(path, CHANNEL_NAMES[field], planes)
+    frame = Frame(**{**values, "id": whole_numbers(path, values["id"]) if "id" in values else None})
+    try:
+        frame.check_presence()
+    except FrameError as error:
+        raise SequenceError(f"{path}: {error}; channels found: {' '.join(planes)}") from error
+    return frame
+
+
+def read_sequence(paths: Sequence[Path]) -> Iterator[Frame]:
+    """Read one frame after the other; all must be of one size and hold something finite in every field.
+
+    Raises
+    ------
+    SequenceError
+        As `read_frame`, and where a frame differs in size from the first or a field of it has no usable value.
+    """
+    size = None
+    for path in paths:
+        frame = read_frame(path)
+        size = size or frame.shape
+        if frame.shape != size:
+            raise SequenceError(f"{path}: expected {extent(size)} pixels as in {paths[0]}, got {extent(frame.shape)}")
+        check_usable(path, frame)
+        yield frame
+
+
+def check_usable(path: Path, frame: Frame) -> None:
+    """Raise `SequenceError` where a whole field is NaN or infinite (depth may be infinite: an empty sky)."""
+    for field, value in frame.present().items():
+        usable = ~np.isnan(value) if field == "depth" else np.isfinite(value)
+        if not usable.any():
+            raise SequenceError(f"{path}: expected finite values in {field}, got none in the whole frame")
+
+
+def write_picture(path: Path, picture: npt.ArrayLike) -> None:
+    """Write a (H, W, 3) linear picture as a plain ``R G B`` EXR file, whole or not at all."""
+    components = np.moveaxis(np.asarray(picture, np.float32), -1, 0)
+    write_channels(path, dict(zip(CHANNEL_NAMES["color"], components, strict=True)))
+
+
+def read_picture(path: Path) -> Plane:
+    """Read the ``R G B`` of an EXR file, whatever else it holds, as (H, W, 3) float32; `SequenceError` without them."""
+    planes = read_channels(path)
+    color = field_of(path, planes, "color")
+    if color is None:
+        raise absent(path, CHANNEL_NAMES["color"], planes)
+    return color
+
+
+def field_of(path: Path, planes: Mapping[str, Plane], field: str) -> Plane | None:
+    """`field`, put together from its channels; None where none is there, an error where only some are."""
+    names = CHANNEL_NAMES[field]
+    found = [planes[name] for name in names if name in planes]
+    if not found:
+        return None
+    needed = names[:2] if field == "motion" else names
+    if not planes.keys() >= set(needed):
+        raise absent(path, needed, planes)
+    return found[0] if len(names) == 1 else np.stack(found, axis=-1)
+
+
+def whole_numbers(path: Path, plane: Plane) -> npt.NDArray[np.uint32]:
+    """Ids as integers; `SequenceError` unless they are whole numbers that float32 holds exactly."""
+    fits = (plane >= 0) & (plane <= MAX_ID) & (plane == np.floor(plane))
+    if not fits.all():
+        raise SequenceError(f"{path}: expected whole numbers in 0..{MAX_ID} in channel id, got {plane[~fits][0]}")
+    return plane.astype(np.uint32)
+
+
+def absent(path: Path, names: Sequence[str], planes: Mapping[str, Plane]) -> SequenceError:
+    """The error for channels that are not there; it lists those that are."""
+    return SequenceError(f"{path}: expected channels {' '.join(names)}, found {' '.join(planes)}")
+
+
+def extent(size: tuple[int, int]) -> str:
+    """(height, width) as people write it: 640x360."""
+    height, width = size
+    return f"{width}x{height}"
+
+
+def write_channels(path: Path, planes: Mapping[str, Plane]) -> None:
+    """Write (H, W) float32 planes as the channels of one EXR file, whole or not at all."""
+    pixels = np.ascontiguousarray(np.stack(list(planes.values()), axis=-1))
+    height, width, count = pixels.shape
+    spec = oiio.ImageSpec(width, height, count, "float")
+    spec.channelnames = tuple(planes)
+    spec.attribute("compression", "zip")
+    with written_whole(path) as aside:
+        image = oiio.ImageBuf(spec)
+        if not (image.set_pixels(spec.roi, pixels) and image.write(str(aside), fileformat="openexr")):
+            raise SequenceError(f"{path}: cannot be written ({image.geterror()})")
+
+
+def read_channels(path: Path) -> dict[str, Plane]:
+    """Read every channel of an EXR file as a (H, W) float32 plane, by name."""
+    require(path)
+    source = oiio.ImageInput.open(str(path))
+    if source is None or source.format_name() != "openexr":
+        got = f"the format {source.format_name()}" if source else oiio.geterror()
+        raise SequenceError(f"{path}: expected an OpenEXR file, got {got}")
+    pixels = source.read_image(0, 0, 0, source.spec().nchannels, "float")
+    if pixels is None:
+        raise SequenceError(f"{path}: expected a whole OpenEXR file, got a damaged one ({source.geterror()})")
+    names = source.spec().channelnames
+    return {name: np.ascontiguousarray(pixels[..., index]) for index, name in enumerate(names)}

@@ -1,0 +1,193 @@
+"""Frames and pictures survive the way to an EXR file and back; what does not fit is refused with the file's name."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from svgf_cl import Frame, FrameError, SequenceError
+from svgf_cl.sequence import (
+    CHANNEL_NAMES,
+    MAX_ID,
+    find_frames,
+    find_numbered,
+    frame_number,
+    frame_path,
+    read_channels,
+    read_frame,
+    read_picture,
+    read_sequence,
+    write_channels,
+    write_frame,
+    write_picture,
+)
+
+
+def floats(*shape: int) -> st.SearchStrategy[np.ndarray]:
+    """Arrays of any float32 at all: infinities, NaN, subnormals, negative zero."""
+    return hnp.arrays(np.float32, shape, elements=st.floats(width=32))
+
+
+@st.composite
+def frames(draw: st.DrawFn) -> Frame:
+    h, w = draw(st.integers(1, 5)), draw(st.integers(1, 5))
+    fields = {"normal": floats(h, w, 3), "depth": floats(h, w), "motion": floats(h, w, draw(st.sampled_from((2, 3))))}
+    fields |= {name: floats(h, w, 3) for name in draw(st.sets(st.sampled_from(("albedo", "emission"))))}
+    signals = draw(st.sampled_from((("color",), ("direct", "indirect"), ("color", "direct", "indirect"))))
+    fields |= {name: floats(h, w, 3) for name in signals}
+    if draw(st.booleans()):
+        fields["id"] = hnp.arrays(np.uint32, (h, w), elements=st.integers(0, MAX_ID))
+    return Frame(**{name: draw(value) for name, value in fields.items()})
+
+
+def plain_frame(h: int = 3, w: int = 4, **fields: object) -> Frame:
+    rng = np.random.default_rng(7)
+    values = {name: rng.random((h, w, 3), np.float32) for name in ("color", "normal", "motion")}
+    return Frame(**{**values, "depth": np.full((h, w), np.inf, np.float32), **fields})
+
+
+@given(frames())
+@settings(deadline=None, max_examples=40)
+def test_a_frame_comes_back_bit_for_bit(frame: Frame) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        path = frame_path(Path(folder), 0)
+        write_frame(path, frame)
+        back = read_frame(path).present()
+    assert back.keys() == frame.present().keys()
+    for name, value in frame.present().items():
+        assert back[name].dtype == value.dtype
+        np.testing.assert_array_equal(back[name], value, strict=True)
+
+
+@given(floats(4, 3, 3))
+@settings(deadline=None, max_examples=20)
+def test_a_picture_comes_back_bit_for_bit(picture: np.ndarray) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "out.exr"
+        write_picture(path, picture)
+        assert set(read_channels(path)) == {"R", "G", "B"}
+        np.testing.assert_array_equal(read_picture(path), picture, strict=True)
+
+
+def test_a_picture_can_be_read_out_of_a_frame(tmp_path: Path) -> None:
+    frame = plain_frame()
+    write_frame(tmp_path / "frame.0000.exr", frame)
+    np.testing.assert_array_equal(read_picture(tmp_path / "frame.0000.exr"), frame.color)
+
+
+def test_frames_are_sorted_by_number_and_nothing_else_is_a_frame(tmp_path: Path) -> None:
+    for name in ("frame.10000.exr", "frame.0002.exr", "frame.9999.exr", "reference.0002.exr", "frame.0003.png"):
+        (tmp_path / name).touch()
+    wanted = ["frame.0002.exr", "frame.9999.exr", "frame.10000.exr"]
+    assert [path.name for path in find_frames([tmp_path])] == wanted
+    assert find_numbered(tmp_path, "reference") == [tmp_path / "reference.0002.exr"]
+    assert [frame_number(tmp_path / name) for name in wanted] == [2, 9999, 10000]
+    assert frame_number(Path("view.exr")) is None
+
+
+def test_files_are_taken_as_given(tmp_path: Path) -> None:
+    path = tmp_path / "any name.exr"
+    path.touch()
+    assert find_frames([path]) == [path]
+
+
+def test_an_empty_or_missing_folder_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(SequenceError, match=r"expected files named frame\.0000\.exr"):
+        find_frames([tmp_path])
+    with pytest.raises(SequenceError, match="nowhere: expected a file or a folder, found nothing"):
+        find_frames([tmp_path / "nowhere"])
+
+
+def test_a_great_id_is_refused_and_leaves_no_file(tmp_path: Path) -> None:
+    with pytest.raises(SequenceError, match="expected ids up to 16777216"):
+        write_frame(tmp_path / "frame.0000.exr", plain_frame(id=np.full((3, 4), MAX_ID + 1, np.uint32)))
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("value", [-1.0, 0.5, np.nan, np.inf, 2.0 * MAX_ID])
+def test_an_id_that_is_no_whole_number_is_refused(tmp_path: Path, value: float) -> None:
+    path = tmp_path / "frame.0000.exr"
+    write_frame(path, plain_frame(id=np.ones((3, 4), np.uint32)))
+    write_channels(path, {**read_channels(path), "id": np.full((3, 4), value, np.float32)})
+    with pytest.raises(SequenceError, match=r"frame\.0000\.exr: expected whole numbers"):
+        read_frame(path)
+
+
+@pytest.mark.parametrize(
+    "channel", [names[-1] for names in CHANNEL_NAMES.values() if names[-1] not in ("id", "motion.Z")]
+)
+def test_an_absent_channel_is_named_with_those_found(tmp_path: Path, channel: str) -> None:
+    path = tmp_path / "frame.0000.exr"
+    rest = {name: np.ones((3, 4, 3), np.float32) for name in ("albedo", "emission", "direct", "indirect")}
+    write_frame(path, plain_frame(**rest))
+    planes = read_channels(path)
+    del planes[channel]
+    write_channels(path, planes)
+    with pytest.raises(SequenceError, match=rf"frame\.0000\.exr: expected channels .*{channel}.*, found .*") as error:
+        read_frame(path)
+    assert all(name in str(error.value) for name in planes)
+
+
+def test_a_frame_without_any_radiance_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "frame.0000.exr"
+    write_frame(path, plain_frame())
+    planes = {name: plane for name, plane in read_channels(path).items() if name not in CHANNEL_NAMES["color"]}
+    write_channels(path, planes)
+    with pytest.raises(SequenceError, match=r"frame\.0000\.exr: Frame.color: expected an array.*channels found"):
+        read_frame(path)
+    with pytest.raises(SequenceError, match="expected channels R G B, found"):
+        read_picture(path)
+
+
+def test_what_is_not_an_exr_file_is_refused(tmp_path: Path) -> None:
+    text, cut = tmp_path / "text.exr", tmp_path / "cut.exr"
+    text.write_text("hello")
+    write_frame(cut, plain_frame(64, 64))
+    cut.write_bytes(cut.read_bytes()[:20_000])
+    with pytest.raises(SequenceError, match=r"text\.exr: expected an OpenEXR file"):
+        read_frame(text)
+    with pytest.raises(SequenceError, match=r"cut\.exr: expected a whole OpenEXR file"):
+        read_frame(cut)
+    with pytest.raises(SequenceError, match=r"none\.exr: expected a file"):
+        read_frame(tmp_path / "none.exr")
+
+
+def test_frames_of_a_sequence_have_one_size(tmp_path: Path) -> None:
+    write_frame(frame_path(tmp_path, 0), plain_frame(3, 4))
+    write_frame(frame_path(tmp_path, 1), plain_frame(4, 4))
+    with pytest.raises(SequenceError, match=r"frame\.0001\.exr: expected 4x3 pixels as in .*0000\.exr, got 4x4"):
+        list(read_sequence(find_frames([tmp_path])))
+
+
+@pytest.mark.parametrize("field", ["color", "depth", "normal"])
+def test_a_field_of_nothing_but_nan_is_refused(tmp_path: Path, field: str) -> None:
+    frame = plain_frame()
+    write_frame(frame_path(tmp_path, 0), plain_frame(**{field: np.full_like(getattr(frame, field), np.nan)}))
+    with pytest.raises(SequenceError, match=rf"0000\.exr: expected finite values in {field}"):
+        list(read_sequence(find_frames([tmp_path])))
+
+
+def test_a_sequence_of_nothing_but_sky_is_fine(tmp_path: Path) -> None:
+    write_frame(frame_path(tmp_path, 0), plain_frame())
+    assert len(list(read_sequence(find_frames([tmp_path])))) == 1
+
+
+def test_an_inconsistent_frame_is_not_written(tmp_path: Path) -> None:
+    with pytest.raises(FrameError, match=r"Frame\.albedo"):
+        write_frame(tmp_path / "frame.0000.exr", plain_frame(albedo=np.ones((9, 9, 3), np.float32)))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_failed_write_keeps_the_old_file(tmp_path: Path) -> None:
+    with pytest.raises(SequenceError, match="cannot be written"):
+        write_picture(tmp_path / "nowhere" / "out.exr", np.zeros((2, 2, 3)))
+    (tmp_path / "taken").mkdir()
+    with pytest.raises(SequenceError, match="taken: cannot be written"):
+        write_picture(tmp_path / "taken", np.zeros((2, 2, 3)))
+    assert [path.name for path in tmp_path.iterdir()] == ["taken"]
