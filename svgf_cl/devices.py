@@ -1,0 +1,211 @@
+"""Lists every OpenCL device with whether it works, and chooses the one to use.
+
+A listed device is not a working device (see `svgf_cl.probe`), so only devices that passed the probe are chosen.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+from dataclasses import dataclass, field, replace
+
+import pyopencl as cl
+
+from svgf_cl import intel_runtime, probe
+from svgf_cl.errors import DeviceError
+
+# A CPU is as fast as its driver's compiler. The order is that of docs/adding_a_device.md's measurements, fastest first;
+# compute units and clock say nothing here, as all drivers report the same silicon (and Intel's a clock of 0).
+CPU_PLATFORMS = ("Intel(R) OpenCL", "Portable Computing Language")
+
+# A simulator claims to be of every type; it finds bugs and is thousands of times slower than anything else.
+SIMULATOR = "Oclgrind"
+
+INSTALL_HINT = """Install one of:
+  Debian, Ubuntu:       apt-get install pocl-opencl-icd
+  x86-64 Linux, no root: pip install 'svgf_cl[cpu]'
+  a GPU:                its vendor's driver with OpenCL"""
+
+
+@dataclass(frozen=True)
+class DeviceReport:
+    """One device as its driver lists it, and whether it works.
+
+    Attributes
+    ----------
+    selector
+        What names this device in ``PYOPENCL_CTX``: platform number, colon, device number.
+    platform, version
+        The OpenCL implementation.
+    device, driver
+        The device and its driver's version.
+    kind
+        ``GPU``, ``accelerator``, ``CPU``, ``simulator`` or ``other``.
+    reason
+        Why it does not work; empty if it does.
+    is_default
+        Whether `default_device` returns it.
+    handle
+        The device itself; None where the driver could not list any.
+    """
+
+    selector: str
+    platform: str
+    version: str
+    device: str
+    driver: str
+    kind: str
+    reason: str
+    is_default: bool = False
+    handle: cl.Device | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def works(self) -> bool:
+        """Whether the device built and ran the probe."""
+        return not self.reason
+
+    def __str__(self) -> str:
+        return f"{self.selector}  {self.device} ({self.platform}, {self.driver}): {self.reason or 'works'}"
+
+
+def list_devices(*, refresh: bool = False) -> list[DeviceReport]:
+    """Return every device of every platform, in the loader's order.
+
+    Parameters
+    ----------
+    refresh
+        Probe again the devices that are remembered as not working.
+    """
+    reports = _survey(refresh=refresh)
+    try:
+        default = _choose(reports)
+    except DeviceError:
+        return reports
+    return [replace(report, is_default=report is default) for report in reports]
+
+
+def default_device() -> cl.Device:
+    """Return the device that ``PYOPENCL_CTX`` names, else the fastest working one.
+
+    GPUs come before accelerators and these before CPUs; within a kind, discrete before integrated, then the most compute
+    units times clock. CPU drivers come in the order of `CPU_PLATFORMS`. The loader's order breaks ties.
+
+    Raises
+    ------
+    DeviceError
+        No device works, or the one that ``PYOPENCL_CTX`` names does not. The message lists every device's reason.
+    """
+    try:
+        chosen = _choose(_survey())
+    except DeviceError:
+        # Drivers get repaired and permissions granted: doubt the memory before giving up.
+        chosen = _choose(_survey(refresh=True))
+    assert chosen.handle is not None
+    return chosen.handle
+
+
+def default_queue() -> cl.CommandQueue:
+    """Return a new queue, with profiling, on the default device; see `default_device`."""
+    return create_queue(default_device())
+
+
+def create_queue(device: cl.Device) -> cl.CommandQueue:
+    """Return a new queue, with profiling, on a device; all such queues of a device share one context."""
+    return cl.CommandQueue(_context(device), device, properties=cl.command_queue_properties.PROFILING_ENABLE)
+
+
+def vector_width(device: cl.Device) -> int:
+    """Return how many pixels one work-item should process: 16, 8 or 4 on CPUs, 1 elsewhere.
+
+    Twice the CPU's native width hides the latency of its arithmetic; 16 is the widest type OpenCL has.
+    """
+    if not device.type & cl.device_type.CPU:
+        return 1
+    return max(4, min(16, 2 * device.native_vector_width_float))
+
+
+@functools.cache
+def _context(device: cl.Device) -> cl.Context:
+    return cl.Context([device])
+
+
+def _survey(*, refresh: bool = False) -> list[DeviceReport]:
+    intel_runtime.register()
+    reports = []
+    for index, platform in enumerate(_platforms()):
+        try:
+            devices = platform.get_devices()
+        except cl.Error as error:
+            reports.append(_unlisted(str(index), platform, probe.summary(str(error))))
+            continue
+        reports += [_report(f"{index}:{number}", device, refresh) for number, device in enumerate(devices)]
+    return reports
+
+
+def _platforms() -> list[cl.Platform]:
+    try:
+        return list(cl.get_platforms())
+    except cl.LogicError as error:
+        if error.code == cl.status_code.PLATFORM_NOT_FOUND_KHR:
+            return []
+        raise
+
+
+def _report(selector: str, device: cl.Device, refresh: bool) -> DeviceReport:
+    return DeviceReport(
+        selector=selector,
+        platform=device.platform.name,
+        version=device.platform.version,
+        device=device.name,
+        driver=device.driver_version,
+        kind=_kind(device),
+        reason=probe.reason(device, refresh=refresh),
+        handle=device,
+    )
+
+
+def _unlisted(selector: str, platform: cl.Platform, reason: str) -> DeviceReport:
+    return DeviceReport(selector, platform.name, platform.version, "none", "unknown", "other", reason)
+
+
+def _kind(device: cl.Device) -> str:
+    if device.platform.name == SIMULATOR:
+        return "simulator"
+    types = {"GPU": cl.device_type.GPU, "accelerator": cl.device_type.ACCELERATOR, "CPU": cl.device_type.CPU}
+    return next((kind for kind, bit in types.items() if device.type & bit), "other")
+
+
+def _choose(reports: list[DeviceReport]) -> DeviceReport:
+    if "PYOPENCL_CTX" in os.environ:
+        return _requested(reports, os.environ["PYOPENCL_CTX"])
+    working = [report for report in reports if report.works]
+    if not working:
+        raise DeviceError(f"No OpenCL device works.\n{_table(reports)}\n{INSTALL_HINT}")
+    return min(working, key=_rank)
+
+
+def _requested(reports: list[DeviceReport], name: str) -> DeviceReport:
+    try:
+        devices = cl.choose_devices(interactive=False, answers=name.split(":"))
+    except (cl.Error, RuntimeError) as error:
+        raise DeviceError(f"PYOPENCL_CTX={name!r} names no device: {error}\n{_table(reports)}") from error
+    if len(devices) != 1:
+        raise DeviceError(f"PYOPENCL_CTX={name!r} names {len(devices)} devices, expected one\n{_table(reports)}")
+    chosen = next(report for report in reports if report.handle == devices[0])
+    if not chosen.works:
+        raise DeviceError(f"PYOPENCL_CTX={name!r} names a device that does not work\n{_table(reports)}")
+    return chosen
+
+
+def _rank(report: DeviceReport) -> tuple[int, int, bool, int]:
+    device = report.handle
+    assert device is not None
+    kind = ("GPU", "accelerator", "CPU", "other", "simulator").index(report.kind)
+    if report.kind == "CPU":
+        known = report.platform in CPU_PLATFORMS
+        return kind, CPU_PLATFORMS.index(report.platform) if known else len(CPU_PLATFORMS), False, 0
+    return kind, 0, device.host_unified_memory, -device.max_compute_units * device.max_clock_frequency
+
+
+def _table(reports: list[DeviceReport]) -> str:
+    return "\n".join(f"  {report}" for report in reports) or "  The loader lists no device at all."

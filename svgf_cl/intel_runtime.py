@@ -1,0 +1,74 @@
+"""Makes Intel's OpenCL CPU runtime from PyPI visible to the OpenCL loader.
+
+``pip install intel-opencl-rt intel-cmplr-lib-rt`` is a whole CPU device that needs no root, but pip registers it nowhere
+a loader looks: the ``.icd`` file it brings holds a path of the machine that built the wheel. A loader takes one
+directory of ``.icd`` files from ``OCL_ICD_VENDORS``, in place of the system's, when it first lists the platforms. So
+`register` writes a directory with Intel's ``.icd`` file beside links to the system's and names it there.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sysconfig
+import warnings
+from pathlib import Path
+
+from svgf_cl.cache import cache_dir, write_whole
+
+LIBRARY = "libintelocl.so"
+SYSTEM_VENDORS = Path("/etc/OpenCL/vendors")
+VARIABLE = "OCL_ICD_VENDORS"
+
+
+def find() -> Path | None:
+    """Return the runtime's library in this Python environment or in the user's site, None if it is not installed."""
+    schemes = (sysconfig.get_default_scheme(), sysconfig.get_preferred_scheme("user"))
+    candidates = (Path(sysconfig.get_path("data", scheme), "lib", LIBRARY) for scheme in schemes)
+    return next((path for path in candidates if path.exists()), None)
+
+
+def register() -> None:
+    """Point the OpenCL loader at the runtime, where it is installed and nobody has pointed the loader elsewhere.
+
+    Does nothing if ``OCL_ICD_VENDORS`` is set (the user's choice stands) or if the system registers an Intel CPU
+    runtime itself (two of them in one process would share their thread pool's symbols). Takes effect only before the
+    first listing of platforms in this process, because loaders read the variable once.
+    """
+    library = find()
+    if library is None or VARIABLE in os.environ or _system_has_it():
+        return
+    try:
+        vendors = _vendors_directory(library)
+    except OSError as error:
+        warnings.warn(f"Intel's OpenCL runtime stays unlisted: {error}", stacklevel=2)
+        return
+    # Without the trailing slash some loaders take the value for a single library.
+    os.environ[VARIABLE] = f"{vendors}/"
+
+
+def _system_has_it() -> bool:
+    return any(LIBRARY in icd.read_text(errors="replace") for icd in SYSTEM_VENDORS.glob("*.icd"))
+
+
+def _vendors_directory(library: Path) -> Path:
+    # One directory per environment, so that two environments do not rewrite each other's.
+    vendors = cache_dir() / f"icd-{hashlib.sha256(bytes(library)).hexdigest()[:12]}"
+    vendors.mkdir(parents=True, exist_ok=True)
+    system = {icd.name for icd in SYSTEM_VENDORS.glob("*.icd")}
+    for link in vendors.glob("*.icd"):
+        if link.is_symlink() and link.name not in system:
+            link.unlink(missing_ok=True)
+    for name in system:
+        _link(vendors / name, SYSTEM_VENDORS / name)
+    intel = vendors / "svgf_cl-intel.icd"
+    if not intel.exists():
+        write_whole(intel, f"{library}\n")
+    return vendors
+
+
+def _link(link: Path, target: Path) -> None:
+    try:
+        link.symlink_to(target)
+    except FileExistsError:
+        pass  # by an earlier run, or by another process just now

@@ -1,0 +1,135 @@
+"""Finds out whether a listed OpenCL device works, by building and running a tiny kernel on it.
+
+A broken driver may crash or hang, so the kernel runs in a process of its own. That takes a fraction of a second; the
+answer is remembered in the cache directory, under everything that may change it.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pyopencl as cl
+
+from svgf_cl.cache import cache_dir, write_whole
+from svgf_cl.programs import OPTIONS
+
+# Part of the key under which answers are remembered: raise it whenever the probe asks for more.
+VERSION = 1
+TIMEOUT_SECONDS = 60
+
+KERNEL = """
+kernel void probe(global const float4 *in, global float4 *out, const float scale)
+{
+    const size_t i = get_global_id(0);
+    out[i] = fma((float4)(scale), in[i], sqrt(in[i]));
+}
+"""
+
+
+def reason(device: cl.Device, *, refresh: bool = False) -> str:
+    """Return why a device does not work, in one line; an empty string if it works.
+
+    Parameters
+    ----------
+    device
+        Any listed device.
+    refresh
+        Doubt the remembered answer if it is that the device does not work.
+    """
+    known = _recall()
+    answer = known.get(key(device))
+    if answer is None or (refresh and answer):
+        answer = _run_apart(key(device))
+        _remember(_recall() | {key(device): answer})
+    return answer
+
+
+def key(device: cl.Device) -> str:
+    """Return what identifies a device together with its driver and this probe; equal devices share it."""
+    platform = device.platform
+    return " | ".join((platform.name, platform.version, device.name, device.driver_version, f"probe {VERSION}"))
+
+
+def run(device: cl.Device) -> str:
+    """Probe a device in this process; the result is that of `reason`."""
+    numbers = np.arange(1, 65, dtype=np.float32)
+    result = np.zeros_like(numbers)
+    try:
+        context = cl.Context([device])
+        queue = cl.CommandQueue(context, properties=cl.command_queue_properties.PROFILING_ENABLE)
+        program = cl.Program(context, KERNEL).build(options=list(OPTIONS))
+        source = cl.Buffer(context, cl.mem_flags.READ_ONLY | cl.mem_flags.COPY_HOST_PTR, hostbuf=numbers)
+        target = cl.Buffer(context, cl.mem_flags.WRITE_ONLY, numbers.nbytes)
+        program.probe(queue, (numbers.size // 4,), None, source, target, np.float32(3))
+        cl.enqueue_copy(queue, result, target)
+    except cl.Error as error:
+        return summary(str(error))
+    if not np.allclose(result, 3 * numbers + np.sqrt(numbers), rtol=1e-6):
+        return "computes wrong numbers"
+    return ""
+
+
+def summary(log: str) -> str:
+    """Return the line of a driver's message that says most: the first that names an error, else the last."""
+    lines = [line.strip() for line in log.splitlines() if line.strip()]
+    errors = (line for line in lines if "error" in line.lower())
+    return next(errors, lines[-1] if lines else "the driver gives no reason")
+
+
+def _run_apart(wanted: str) -> str:
+    # No answer from pyopencl's binary cache: the compiler is what is on trial.
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "PYOPENCL_NO_CACHE": "1"}
+    command = [sys.executable, "-W", "ignore", "-m", "svgf_cl.probe", wanted]
+    try:
+        child = subprocess.run(
+            command, env=environment, capture_output=True, text=True, errors="replace", timeout=TIMEOUT_SECONDS
+        )
+    except subprocess.TimeoutExpired:
+        return f"the driver hangs: no answer within {TIMEOUT_SECONDS} s"
+    if child.returncode < 0:
+        return f"the driver crashes ({signal.Signals(-child.returncode).name}): {summary(child.stderr)}"
+    if child.returncode:
+        return f"the probe fails: {summary(child.stderr)}"
+    # The last line only, as drivers print on their own account.
+    return str(json.loads(child.stdout.splitlines()[-1]))
+
+
+def _listed() -> Iterator[cl.Device]:
+    for platform in cl.get_platforms():
+        yield from platform.get_devices()
+
+
+def _memory() -> Path:
+    return cache_dir() / "probes.json"
+
+
+def _recall() -> dict[str, str]:
+    try:
+        return dict(json.loads(_memory().read_text(encoding="utf-8")))
+    except (FileNotFoundError, json.JSONDecodeError):
+        return {}  # never asked before, or not a file of ours: ask again
+
+
+def _remember(answers: dict[str, str]) -> None:
+    try:
+        write_whole(_memory(), json.dumps(answers, indent=1))
+    except OSError as error:
+        warnings.warn(f"svgf_cl will probe its devices anew in every run: {error}", stacklevel=3)
+
+
+def _main(wanted: str) -> None:
+    device = next((device for device in _listed() if key(device) == wanted), None)
+    answer = run(device) if device else "not listed by the loader in a process of its own"
+    print(f"\n{json.dumps(answer)}", flush=True)
+
+
+if __name__ == "__main__":
+    _main(sys.argv[1])

@@ -1,0 +1,98 @@
+"""Builds one stage's kernel source for one device, with its compile-time constants, and keeps the result.
+
+A stage is ``kernels/<stage>.cl``. The shared header is put in front of it here, on the host: ``#include`` does not work
+on remote and offline devices. ``#line`` keeps the names and line numbers of build logs those of the files.
+Across processes the driver's own cache (PoCL, NVIDIA) or pyopencl's remembers the binaries.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import os
+import threading
+import warnings
+from collections.abc import Mapping
+from importlib import resources
+
+import pyopencl as cl
+
+from svgf_cl.errors import DeviceError
+
+HEADER = "common.clh"
+
+# No fast-math: it would allow the compiler to drop the guards against NaN and infinity.
+OPTIONS = ("-cl-std=CL1.2", "-cl-mad-enable")
+
+Define = int | float | str
+
+_lock = threading.Lock()
+
+
+def stages() -> list[str]:
+    """Return the names of all stages, sorted."""
+    files = resources.files("svgf_cl.kernels").iterdir()
+    return sorted(file.name.removesuffix(".cl") for file in files if file.name.endswith(".cl"))
+
+
+def source(stage: str) -> str:
+    """Return a stage's whole source: the shared header, then the stage's own file."""
+    kernels = resources.files("svgf_cl.kernels")
+    names = (HEADER, f"{stage}.cl")
+    return "\n".join(f'#line 1 "{name}"\n{(kernels / name).read_text(encoding="utf-8")}' for name in names)
+
+
+def options(defines: Mapping[str, Define]) -> tuple[str, ...]:
+    """Return the compiler's options for a set of macros, in an order that does not depend on the mapping's."""
+    return OPTIONS + tuple(f"-D{name}={_literal(value)}" for name, value in sorted(defines.items()))
+
+
+def build(context: cl.Context, device: cl.Device, stage: str, defines: Mapping[str, Define]) -> cl.Program:
+    """Build a stage for a device, or return it from memory if it was built before.
+
+    Parameters
+    ----------
+    context, device
+        What to build for; the device is one of the context's.
+    stage
+        Name of a file in ``kernels/``, without its suffix.
+    defines
+        Macros. A float becomes a single precision literal, a string is passed as it is.
+
+    Raises
+    ------
+    DeviceError
+        The device's compiler refused the source. The message holds device, driver, file, options and the log.
+    """
+    with _lock:
+        return _build(context, device, stage, options(defines))
+
+
+@functools.lru_cache(maxsize=256)
+def _build(context: cl.Context, device: cl.Device, stage: str, flags: tuple[str, ...]) -> cl.Program:
+    try:
+        with warnings.catch_warnings():
+            # Drivers report success in their log. Whoever wants to read it sets pyopencl's own variable.
+            if not os.environ.get("PYOPENCL_COMPILER_OUTPUT"):
+                warnings.simplefilter("ignore", cl.CompilerWarning)
+            return cl.Program(context, source(stage)).build(options=list(flags), devices=[device])
+    except cl.Error as error:
+        raise DeviceError(
+            f"{stage}.cl does not build on this device\n"
+            f"device:  {device.name} ({device.platform.name})\n"
+            f"driver:  {device.driver_version}\n"
+            f"options: {' '.join(flags)}\n"
+            f"log:\n{error}"
+        ) from error
+
+
+def _literal(value: Define) -> str:
+    if isinstance(value, str):
+        if not value or any(character.isspace() for character in value):
+            raise ValueError(f"a macro's text must not be empty or hold spaces, got {value!r}")
+        return value
+    if isinstance(value, int):
+        return str(int(value))
+    if not math.isfinite(value):
+        raise ValueError(f"a macro must be a finite number, got {value}")
+    return f"{float(value)!r}f"
