@@ -1,8 +1,9 @@
 """svgf_cl: a denoiser for path-traced animation that runs on any OpenCL device."""
 
+from svgf_cl.denoiser import Denoiser
 from svgf_cl.errors import DeviceError, FrameError, SequenceError, SettingsError, SvgfError
 from svgf_cl.frame import Frame
 from svgf_cl.settings import Settings
 
-__all__ = ["DeviceError", "Frame", "FrameError", "SequenceError", "Settings", "SettingsError", "SvgfError"]
+__all__ = ["Denoiser", "DeviceError", "Frame", "FrameError", "SequenceError", "Settings", "SettingsError", "SvgfError"]
 __version__ = "0.1.0"

@@ -73,6 +73,11 @@ class Settings:
         if self.sigma_normal & (self.sigma_normal - 1):
             raise SettingsError(f"Settings.sigma_normal: expected a power of two, got {self.sigma_normal}")
 
+    @property
+    def defines(self) -> dict[str, int]:
+        """The kernels' macros; every other setting is an argument, so that tuning it compiles nothing."""
+        return {"LOG2_SIGMA_NORMAL": self.sigma_normal.bit_length() - 1, "TAA": int(self.taa)}
+
 
 def check_number(name: str, value: object, *, whole: bool) -> None:
     """Raise `SettingsError` unless `value` is a number (a whole one where asked) within the setting's range."""

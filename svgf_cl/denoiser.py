@@ -1,0 +1,204 @@
+"""`Denoiser`: the pass table of `svgf_cl.passes` put to work on a device."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pyopencl as cl
+import pyopencl.array as cl_array
+
+from svgf_cl import devices, programs
+from svgf_cl.buffers import Buffers, Uploads, check_out
+from svgf_cl.errors import FrameError, SvgfError
+from svgf_cl.frame import Frame, Shape
+from svgf_cl.passes import OUT, Inputs, Pass, pipeline
+from svgf_cl.planes import Layout
+from svgf_cl.settings import Settings
+from svgf_cl.stages import StageView, stage_views
+
+WORK_GROUP = 16  # neighbouring vectors of a row
+
+
+@dataclass(frozen=True)
+class Launch:
+    """A pass with its kernel built and its constant arguments in place."""
+
+    step: Pass
+    kernel: cl.Kernel
+    constants: tuple[Any, ...]
+
+
+class Denoiser:
+    """Denoises a sequence of frames of one size, one call a frame.
+
+    Parameters
+    ----------
+    shape : (int, int)
+        (height, width) in pixels, each >= 1.
+    settings : Settings, optional
+        Parameters of the filter.
+    queue : pyopencl.CommandQueue, optional
+        In-order queue to work on; by default one on the fastest working device (`svgf_cl.devices.default_queue`).
+    keep_stages : bool
+        Give every stage memory of its own, so that `stage` can read all of them; by default they share it.
+
+    Raises
+    ------
+    SvgfError
+        If `shape` is no image, or no OpenCL device works (`DeviceError`).
+
+    Examples
+    --------
+    >>> den = Denoiser((height, width))
+    >>> out = den.denoise(Frame(color=color, normal=normal, depth=depth, motion=motion))
+    """
+
+    def __init__(
+        self,
+        shape: Shape,
+        *,
+        settings: Settings | None = None,
+        queue: cl.CommandQueue | None = None,
+        keep_stages: bool = False,
+    ) -> None:
+        self.shape = check_shape(shape)
+        self.settings = settings or Settings()
+        self.queue = queue or devices.default_queue()
+        self._layout = Layout(*self.shape)
+        self._vector_width = devices.vector_width(self.queue.device)
+        self._keep_stages = keep_stages
+        self._uploads = Uploads(self.queue)
+        self.reset()
+
+    def denoise(self, frame: Frame, *, out: Any = None, wait_for: Sequence[cl.Event] = ()) -> Any:
+        """Filter the next frame of the sequence.
+
+        Parameters
+        ----------
+        frame : Frame
+            Every field of this denoiser's shape. The set of fields must stay the same until `reset`.
+        out : (H, W, 3) float32 C-contiguous ndarray or Array, optional
+            Where to put the result.
+        wait_for : sequence of pyopencl.Event
+            What must be complete before the frame's Arrays are read.
+
+        Returns
+        -------
+        (H, W, 3) float32
+            Linear HDR radiance: `out` if given; else an Array, perhaps still being computed on `queue`, if every
+            field is an Array; else an ndarray.
+
+        Raises
+        ------
+        FrameError
+            If a field is missing, of another shape or type, or on another context.
+        """
+        frame.check(self.shape)
+        self._prepare(Inputs.of(frame))
+        result = self._result(frame) if out is None else out
+        check_out(result, (*self.shape, 3))
+        on_host = isinstance(result, np.ndarray)
+        buffers = {name: self._uploads.buffer(name, getattr(frame, name)) for name in self._inputs.fields}
+        buffers[OUT] = self._uploads.keep(OUT, result.nbytes) if on_host else self._uploads.device_buffer(OUT, result)
+        if wait_for:
+            cl.enqueue_barrier(self.queue, wait_for=list(wait_for))
+        self._planes.begin_frame()
+        self._events = [(launch.step.name, self._run(launch, buffers)) for launch in self._launches]
+        if on_host:
+            cl.enqueue_copy(self.queue, result, buffers[OUT])
+        return result
+
+    def reset(self) -> None:
+        """Forget the past: call it at a camera cut, or to send frames with other fields."""
+        self._launches: list[Launch] = []
+        self._views: dict[str, StageView] = {}
+        self._events: list[tuple[str, cl.Event]] = []
+
+    def profile(self) -> dict[str, float]:
+        """Milliseconds on the device of each pass of the last frame, in order, from OpenCL events."""
+        if not self.queue.properties & cl.command_queue_properties.PROFILING_ENABLE:
+            raise SvgfError("profile(): the queue was made without PROFILING_ENABLE")
+        self.queue.finish()
+        return {name: 1e-6 * (event.profile.end - event.profile.start) for name, event in self._events}
+
+    @property
+    def stages(self) -> list[str]:
+        """Names that `stage` understands; empty before the first frame."""
+        return list(self._views)
+
+    def stage(self, name: str) -> np.ndarray:
+        """An intermediate result of the last frame, for debugging.
+
+        Parameters
+        ----------
+        name : str
+            One of `stages`, such as "history_length", "variance" or "level_2".
+
+        Returns
+        -------
+        (H, W), (H, W, 3), or the same with a leading axis of signals; float32
+
+        Raises
+        ------
+        SvgfError
+            If there is no such stage, or its memory went to a later stage of the frame.
+        """
+        if name not in self._views:
+            raise SvgfError(f"stage: expected one of {', '.join(self._views) or 'none before a frame'}; got {name!r}")
+        view = self._views[name]
+        if not self._planes.survives(view.buffer):
+            raise SvgfError(f"stage: {name!r} was overwritten by a later pass; use Denoiser(..., keep_stages=True)")
+        return view.of(self._layout.crop(self._planes.read(view.buffer)))
+
+    @property
+    def nbytes(self) -> int:
+        """Device memory held for planes, in bytes; 0 before the first frame."""
+        return self._planes.nbytes if self._launches else 0
+
+    def _prepare(self, inputs: Inputs) -> None:
+        """Build kernels and clear the history on the first frame; afterwards only see that the fields stay the same."""
+        if self._launches:
+            if inputs != self._inputs:
+                raise FrameError("fields", f"{self._inputs} as before (or a call of reset)", str(inputs))
+            return
+        passes = pipeline(inputs, self.settings)
+        launches = [self._launch(step, inputs) for step in passes]
+        self._planes = Buffers(self.queue, self._layout, passes, inputs, share=not self._keep_stages)
+        self._views = stage_views(passes, inputs, self.settings.iterations)
+        self._inputs, self._launches = inputs, launches
+
+    def _launch(self, step: Pass, inputs: Inputs) -> Launch:
+        defines = {"VW": self._vector_width, **inputs.defines, **self.settings.defines}
+        program = programs.build(self.queue.context, self.queue.device, step.stage, defines)
+        scalars = [] if step.step is None else [np.int32(step.step)]
+        scalars += [np.float32(getattr(self.settings, name)) for name in step.settings]
+        return Launch(step, cl.Kernel(program, step.kernel), (self._layout.size, *scalars))
+
+    def _run(self, launch: Launch, user: dict[str, cl.Buffer]) -> cl.Event:
+        names = (*launch.step.reads, *launch.step.writes)
+        arguments = [user[name] if name in user else self._planes[name] for name in names]
+        vectors = -(-self._layout.width // self._vector_width)
+        global_size = (-(-vectors // WORK_GROUP) * WORK_GROUP, self._layout.height)
+        return launch.kernel(self.queue, global_size, (WORK_GROUP, 1), *launch.constants, *arguments)
+
+    def _result(self, frame: Frame) -> Any:
+        """A new array for the result, of the same kind as the frame's."""
+        shape = (*self.shape, 3)
+        if all(isinstance(value, cl_array.Array) for value in frame.present().values()):
+            return cl_array.empty(self.queue, shape, np.float32)
+        return np.empty(shape, np.float32)
+
+
+def check_shape(shape: Shape) -> Shape:
+    """(height, width) as plain integers; `SvgfError` unless both are whole numbers of at least 1."""
+    try:
+        height, width = (operator.index(side) for side in shape)
+    except (TypeError, ValueError) as error:
+        raise SvgfError(f"Denoiser: expected shape (height, width), got {shape!r}") from error
+    if height < 1 or width < 1:
+        raise SvgfError(f"Denoiser: expected a shape of at least 1 x 1 pixel, got {shape!r}")
+    return height, width

@@ -1,0 +1,198 @@
+"""The pipeline as a table: which kernel runs when, what it reads and what it writes.
+
+Labels of the profiler, names of the stages a debugger can look at, and the sharing of scratch memory all follow from
+this table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from svgf_cl.frame import Frame
+from svgf_cl.settings import Settings
+
+# Buffers that live from frame to frame. A pair is written anew every frame and read back, as "previous ...", in the next.
+PAIRS = ("guide", "moments", "antialiased")
+HISTORY = ("history",)
+# Where the user's result goes.
+OUT = "out"
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """Which optional fields a frame has; kernels are built for exactly these, so what is absent costs nothing."""
+
+    signals: int
+    motion: int
+    albedo: bool
+    emission: bool
+    id: bool
+
+    @classmethod
+    def of(cls, frame: Frame) -> Inputs:
+        """The inputs that `frame` supplies."""
+        return cls(
+            signals=1 if frame.direct is None else 2,
+            motion=int(frame.motion.shape[2]),
+            albedo=frame.albedo is not None,
+            emission=frame.emission is not None,
+            id=frame.id is not None,
+        )
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """Names of the frame's fields that are read."""
+        optional = [name for name in ("albedo", "emission", "id") if getattr(self, name)]
+        return (*self.radiance, "normal", "depth", "motion", *optional)
+
+    @property
+    def radiance(self) -> tuple[str, ...]:
+        """The fields that are filtered."""
+        return ("color",) if self.signals == 1 else ("direct", "indirect")
+
+    @property
+    def defines(self) -> dict[str, int]:
+        """The kernels' macros."""
+        return {
+            "SIGNALS": self.signals,
+            "MOTION": self.motion,
+            "HAS_ALBEDO": int(self.albedo),
+            "HAS_EMISSION": int(self.emission),
+            "HAS_ID": int(self.id),
+        }
+
+    def planes(self, buffer: str) -> int:
+        """Number of planes of a device buffer."""
+        name = buffer.removeprefix("previous ")
+        if name == "guide":
+            return 5 if self.id else 4
+        if name == "moments":
+            return 1 + 2 * self.signals
+        if name in ("antialiased", "modulated"):
+            return 3
+        if name == "demodulated":
+            return 3 * self.signals
+        return 4 * self.signals
+
+
+@dataclass(frozen=True)
+class Pass:
+    """One kernel launch. Its arguments are: size, step (if any), the settings, the reads, the writes."""
+
+    name: str
+    stage: str
+    kernel: str
+    reads: tuple[str, ...]
+    writes: tuple[str, ...]
+    settings: tuple[str, ...] = ()
+    step: int | None = None
+
+
+def pipeline(inputs: Inputs, settings: Settings) -> tuple[Pass, ...]:
+    """The passes of a frame, in order (Schied et al. 2017, figure 1)."""
+    albedo = ("albedo",) if inputs.albedo else ()
+    emission = ("emission",) if inputs.emission else ()
+    id_ = ("id",) if inputs.id else ()
+    removed = emission if inputs.signals == 1 else ()
+    filtered = level_buffer(settings.iterations)
+    passes = [
+        Pass(
+            "demodulate",
+            "modulate",
+            "demodulate",
+            reads=(*inputs.radiance, *albedo, *removed, "normal", "depth", *id_),
+            writes=("guide", "demodulated"),
+        ),
+        Pass(
+            "temporal",
+            "temporal",
+            "temporal",
+            reads=("motion", "guide", "demodulated", "previous guide", "history", "previous moments"),
+            writes=("accumulated", "moments"),
+            settings=("alpha_color", "alpha_moments", "depth_threshold", "normal_threshold"),
+        ),
+        Pass(
+            "variance",
+            "variance",
+            "variance",
+            reads=("guide", "moments"),
+            writes=("accumulated",),
+            settings=("sigma_depth", "depth_slope_floor"),
+        ),
+        *atrous_levels(settings.iterations),
+        Pass(
+            "modulate",
+            "modulate",
+            "modulate",
+            reads=(*albedo, *emission, filtered),
+            writes=("modulated" if settings.taa else OUT,),
+        ),
+    ]
+    if settings.taa:
+        passes.append(
+            Pass(
+                "taa",
+                "taa",
+                "taa",
+                reads=("motion", "modulated", "previous antialiased"),
+                writes=("antialiased", OUT),
+                settings=("alpha_taa",),
+            )
+        )
+    return tuple(passes)
+
+
+def atrous_levels(iterations: int) -> Iterator[Pass]:
+    """The wavelet levels; the first writes the colour history of the next frame (paper, section 4.1)."""
+    for level in range(1, iterations + 1):
+        yield Pass(
+            f"atrous {level}",
+            "atrous",
+            "atrous",
+            reads=("guide", level_buffer(level - 1)),
+            writes=(level_buffer(level),),
+            settings=("sigma_depth", "sigma_luminance", "depth_slope_floor"),
+            step=2 ** (level - 1),
+        )
+
+
+def level_buffer(level: int) -> str:
+    """Buffer that holds the illumination after so many a-trous levels."""
+    return ("accumulated", *HISTORY)[level] if level < 2 else f"level {level}"
+
+
+def persistent_buffers(passes: tuple[Pass, ...]) -> list[str]:
+    """The history buffers that these passes write, each pair with its previous half."""
+    written = {name for p in passes for name in p.writes}
+    pairs = [name for name in PAIRS if name in written]
+    return [*HISTORY, *pairs, *(f"previous {name}" for name in pairs)]
+
+
+def scratch_slots(passes: tuple[Pass, ...], *, share: bool = True) -> dict[str, int]:
+    """Memory slot of every buffer that lives within a frame; buffers never alive at once share a slot.
+
+    Parameters
+    ----------
+    passes : tuple of Pass
+    share : bool
+        False gives each buffer a slot of its own, so that all can be looked at after the frame.
+    """
+    persistent = {*persistent_buffers(passes), OUT}
+    first: dict[str, int] = {}
+    last: dict[str, int] = {}
+    for index, step in enumerate(passes):
+        for name in step.writes:
+            if name not in persistent:
+                first.setdefault(name, index)
+        for name in (*step.reads, *step.writes):
+            if name in first:
+                last[name] = index
+    slots: dict[str, int] = {}
+    busy_until: list[int] = []
+    for name, begin in first.items():
+        free = [slot for slot, end in enumerate(busy_until) if share and end < begin]
+        slot = free[0] if free else len(busy_until)
+        busy_until[slot : slot + 1] = [last[name]]
+        slots[name] = slot
+    return slots
