@@ -1,0 +1,165 @@
+"""The pinhole camera, its path through the scene, and where it sees a point."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import SceneError
+from .vectors import Float64
+
+Vector = tuple[float, float, float]
+
+# Where no previous position exists (the point lay behind the camera): far outside any image.
+OUTSIDE = 1e6
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A pinhole camera.
+
+    Parameters
+    ----------
+    position, look_at : (x, y, z)
+        The eye and a point in the middle of the image, in scene units.
+    up : (x, y, z)
+        The direction that is up in the image; any length, not along the view.
+    fov_y : float
+        Vertical field of view in degrees, 0 < fov_y < 180.
+
+    Raises
+    ------
+    SceneError
+        The view direction, `up` or `fov_y` span no image.
+    """
+
+    position: Vector
+    look_at: Vector
+    up: Vector = (0.0, 1.0, 0.0)
+    fov_y: float = 45.0
+
+    def __post_init__(self) -> None:
+        numbers = (*self.position, *self.look_at, *self.up, self.fov_y)
+        if not all(map(math.isfinite, numbers)) or not 0.0 < self.fov_y < 180.0:
+            raise SceneError(f"camera: expected finite numbers and a field of view in (0, 180) degrees, got {self}")
+        view = np.subtract(self.look_at, self.position)
+        if np.linalg.norm(np.cross(view, self.up)) <= 1e-9 * np.linalg.norm(view) * np.linalg.norm(self.up):
+            raise SceneError(f"camera: expected a point to look at that is not along the up direction, got {self}")
+
+    @classmethod
+    def parse(cls, text: str) -> Camera:
+        """Read a camera from ``px,py,pz/lx,ly,lz[/fov[/ux,uy,uz]]``: position, point looked at, degrees, up.
+
+        Raises
+        ------
+        SceneError
+            `text` has another form.
+        """
+        try:
+            parts = [tuple(float(number) for number in part.split(",")) for part in text.split("/")]
+        except ValueError:
+            parts = []
+        if [len(part) for part in parts] not in ([3, 3], [3, 3, 1], [3, 3, 1, 3]):
+            raise SceneError(f"camera: expected 'px,py,pz/lx,ly,lz/fov' with optional '/ux,uy,uz', got {text!r}")
+        position, look_at, *rest = parts
+        fov_y = rest[0][0] if rest else cls.fov_y
+        up = rest[1] if len(rest) == 2 else cls.up
+        return cls(_vector(position), _vector(look_at), _vector(up), fov_y)
+
+    def basis(self) -> Float64:
+        """Rows right, up, forward: an orthonormal (3, 3) matrix that turns world directions into the camera's."""
+        forward = np.subtract(self.look_at, self.position)
+        forward = forward / np.linalg.norm(forward)
+        right = np.cross(forward, self.up)
+        right /= np.linalg.norm(right)
+        return np.stack([right, np.cross(right, forward), forward])
+
+    def directions(self, x: Float64, y: Float64, shape: tuple[int, int]) -> Float64:
+        """World directions (3, N) through the image positions `x`, `y` (N,) of a (height, width) image.
+
+        Whole numbers are pixel centres. A direction's component along the camera's axis is 1.
+        """
+        height, width = shape
+        scale = 2.0 * math.tan(math.radians(self.fov_y) / 2.0) / height
+        right, up, forward = self.basis()
+        across = (x - (width - 1) / 2.0) * scale
+        down = (y - (height - 1) / 2.0) * scale
+        return right[:, None] * across - up[:, None] * down + forward[:, None]
+
+    def project(self, offset: Float64, shape: tuple[int, int]) -> Float64:
+        """Image position and depth, stacked (3, N), of points given relative to the eye (3, N), or of directions.
+
+        The inverse of `directions`. Points at or behind the eye's plane land at `OUTSIDE`.
+        """
+        height, width = shape
+        scale = height / (2.0 * math.tan(math.radians(self.fov_y) / 2.0))
+        across, above, depth = self.basis() @ offset
+        with np.errstate(divide="ignore", invalid="ignore"):
+            x = across / depth * scale + (width - 1) / 2.0
+            y = -above / depth * scale + (height - 1) / 2.0
+        seen = depth > 0.0
+        return np.stack([np.where(seen, x, OUTSIDE), np.where(seen, y, OUTSIDE), depth])
+
+
+@dataclass(frozen=True)
+class CameraPath:
+    """A camera that moves through keyframes at equal times, along a Catmull-Rom spline.
+
+    The spline passes through every keyframe with continuous velocity; between two keyframes it is a straight line.
+
+    Parameters
+    ----------
+    keyframes : tuple of Camera
+        At least one.
+    """
+
+    keyframes: tuple[Camera, ...]
+
+    def __post_init__(self) -> None:
+        if not self.keyframes:
+            raise SceneError("camera path: expected at least one camera, got none")
+
+    @classmethod
+    def static(cls, camera: Camera) -> CameraPath:
+        """A camera that stands still."""
+        return cls((camera,))
+
+    @classmethod
+    def through(cls, cameras: Sequence[Camera]) -> CameraPath:
+        """A path through `cameras`, in their order."""
+        return cls(tuple(cameras))
+
+    def at(self, t: float) -> Camera:
+        """The camera at time `t`, 0 (first keyframe) to 1 (last)."""
+        if len(self.keyframes) == 1:
+            return self.keyframes[0]
+        keys = np.array([(*key.position, *key.look_at, *key.up, key.fov_y) for key in self.keyframes])
+        segment, s = divmod(min(max(t, 0.0), 1.0) * (len(keys) - 1), 1.0)
+        if segment == len(keys) - 1:
+            segment, s = segment - 1, 1.0
+        # One more keyframe at either end, in line with the last two, lets the spline reach the ends.
+        padded = np.concatenate([[2 * keys[0] - keys[1]], keys, [2 * keys[-1] - keys[-2]]])
+        values = _catmull_rom(padded[int(segment) : int(segment) + 4], s)
+        return Camera(_vector(values[0:3]), _vector(values[3:6]), _vector(values[6:9]), float(values[9]))
+
+
+def _catmull_rom(points: Float64, s: float) -> Float64:
+    """The spline through the middle two of four `points` (4, K), at `s` in 0..1 between them."""
+    weights = 0.5 * np.array(
+        [
+            -s + 2 * s**2 - s**3,
+            2 - 5 * s**2 + 3 * s**3,
+            s + 4 * s**2 - 3 * s**3,
+            -(s**2) + s**3,
+        ]
+    )
+    return weights @ points
+
+
+def _vector(values: Sequence[float] | NDArray[np.float64]) -> Vector:
+    x, y, z = values
+    return float(x), float(y), float(z)
