@@ -16,7 +16,7 @@ from svgf_cl.errors import DeviceError
 
 # A CPU is as fast as its driver's compiler. The order is that of docs/adding_a_device.md's measurements, fastest first;
 # compute units and clock say nothing here, as all drivers report the same silicon (and Intel's a clock of 0).
-CPU_PLATFORMS = ("Intel(R) OpenCL", "Portable Computing Language")
+CPU_PLATFORMS = (intel_runtime.PLATFORM, "Portable Computing Language")
 
 # A simulator claims to be of every type; it finds bugs and is thousands of times slower than anything else.
 SIMULATOR = "Oclgrind"
@@ -87,8 +87,8 @@ def list_devices(*, refresh: bool = False) -> list[DeviceReport]:
 def default_device() -> cl.Device:
     """Return the device that ``PYOPENCL_CTX`` names, else the fastest working one.
 
-    GPUs come before accelerators and these before CPUs; within a kind, discrete before integrated, then the most compute
-    units times clock. CPU drivers come in the order of `CPU_PLATFORMS`. The loader's order breaks ties.
+    GPUs come before accelerators and these before CPUs; within a kind, discrete before integrated, then the most
+    compute units times clock. CPU drivers come in the order of `CPU_PLATFORMS`. The loader's order breaks ties.
 
     Raises
     ------
@@ -132,13 +132,16 @@ def _context(device: cl.Device) -> cl.Context:
 def _survey(*, refresh: bool = False) -> list[DeviceReport]:
     intel_runtime.register()
     reports = []
-    for index, platform in enumerate(_platforms()):
+    platforms = _platforms()
+    for index, platform in enumerate(platforms):
         try:
             devices = platform.get_devices()
         except cl.Error as error:
-            reports.append(_unlisted(str(index), platform, probe.summary(str(error))))
+            reports.append(_unlisted(str(index), platform.name, platform.version, probe.summary(str(error))))
             continue
         reports += [_report(f"{index}:{number}", device, refresh) for number, device in enumerate(devices)]
+    if reason := intel_runtime.why_unlisted({platform.name for platform in platforms}):
+        reports.append(_unlisted("-", intel_runtime.PLATFORM, "unknown", reason))
     return reports
 
 
@@ -164,8 +167,8 @@ def _report(selector: str, device: cl.Device, refresh: bool) -> DeviceReport:
     )
 
 
-def _unlisted(selector: str, platform: cl.Platform, reason: str) -> DeviceReport:
-    return DeviceReport(selector, platform.name, platform.version, "none", "unknown", "other", reason)
+def _unlisted(selector: str, platform: str, version: str, reason: str) -> DeviceReport:
+    return DeviceReport(selector, platform, version, "no device", "no driver", "other", reason)
 
 
 def _kind(device: cl.Device) -> str:

@@ -1,21 +1,28 @@
 """Makes Intel's OpenCL CPU runtime from PyPI visible to the OpenCL loader.
 
-``pip install intel-opencl-rt intel-cmplr-lib-rt`` is a whole CPU device that needs no root, but pip registers it nowhere
-a loader looks: the ``.icd`` file it brings holds a path of the machine that built the wheel. A loader takes one
+``pip install intel-opencl-rt intel-cmplr-lib-rt`` is a whole CPU device that needs no root, but pip registers it
+nowhere a loader looks: the ``.icd`` file it brings holds a path of the machine that built the wheel. A loader takes one
 directory of ``.icd`` files from ``OCL_ICD_VENDORS``, in place of the system's, when it first lists the platforms. So
 `register` writes a directory with Intel's ``.icd`` file beside links to the system's and names it there.
+
+No library needs to be loaded beforehand: since 2025.0 the runtime finds its neighbours by its own RUNPATH.
 """
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import sysconfig
 import warnings
+from collections.abc import Container
 from pathlib import Path
 
-from svgf_cl.cache import cache_dir, write_whole
+from svgf_cl.cache import cache_folder
+from svgf_cl.errors import SvgfError
+from svgf_cl.files import written_whole
 
+PLATFORM = "Intel(R) OpenCL"
 LIBRARY = "libintelocl.so"
 SYSTEM_VENDORS = Path("/etc/OpenCL/vendors")
 VARIABLE = "OCL_ICD_VENDORS"
@@ -39,21 +46,32 @@ def register() -> None:
     if library is None or VARIABLE in os.environ or _system_has_it():
         return
     try:
-        vendors = _vendors_directory(library)
-    except OSError as error:
+        vendors = _vendors_folder(library)
+    except (OSError, SvgfError) as error:
         warnings.warn(f"Intel's OpenCL runtime stays unlisted: {error}", stacklevel=2)
         return
     # Without the trailing slash some loaders take the value for a single library.
     os.environ[VARIABLE] = f"{vendors}/"
 
 
+def why_unlisted(platforms: Container[str]) -> str:
+    """Return why the runtime, though installed, is not among these platforms; empty if there is nothing to explain."""
+    library = find()
+    if library is None or PLATFORM in platforms:
+        return ""
+    vendors = os.environ.get(VARIABLE)
+    if vendors and Path(vendors).parent == cache_folder():
+        return "the platforms were listed before svgf_cl was imported; import svgf_cl first"
+    return f"{library} is installed, but the OpenCL loader is not pointed at it ({VARIABLE}={vendors or ''!r})"
+
+
 def _system_has_it() -> bool:
     return any(LIBRARY in icd.read_text(errors="replace") for icd in SYSTEM_VENDORS.glob("*.icd"))
 
 
-def _vendors_directory(library: Path) -> Path:
+def _vendors_folder(library: Path) -> Path:
     # One directory per environment, so that two environments do not rewrite each other's.
-    vendors = cache_dir() / f"icd-{hashlib.sha256(bytes(library)).hexdigest()[:12]}"
+    vendors = cache_folder() / f"icd-{hashlib.sha256(bytes(library)).hexdigest()[:12]}"
     vendors.mkdir(parents=True, exist_ok=True)
     system = {icd.name for icd in SYSTEM_VENDORS.glob("*.icd")}
     for link in vendors.glob("*.icd"):
@@ -63,12 +81,11 @@ def _vendors_directory(library: Path) -> Path:
         _link(vendors / name, SYSTEM_VENDORS / name)
     intel = vendors / "svgf_cl-intel.icd"
     if not intel.exists():
-        write_whole(intel, f"{library}\n")
+        with written_whole(intel) as aside:
+            aside.write_text(f"{library}\n")
     return vendors
 
 
 def _link(link: Path, target: Path) -> None:
-    try:
+    with contextlib.suppress(FileExistsError):  # by an earlier run, or by another process just now
         link.symlink_to(target)
-    except FileExistsError:
-        pass  # by an earlier run, or by another process just now

@@ -13,16 +13,18 @@ import subprocess
 import sys
 import warnings
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pyopencl as cl
 
-from svgf_cl.cache import cache_dir, write_whole
+from svgf_cl.cache import cache_folder
+from svgf_cl.errors import SvgfError
+from svgf_cl.files import written_whole
 from svgf_cl.programs import OPTIONS
 
 # Part of the key under which answers are remembered: raise it whenever the probe asks for more.
 VERSION = 1
+MEMORY = "probes.json"
 TIMEOUT_SECONDS = 60
 
 KERNEL = """
@@ -107,22 +109,20 @@ def _listed() -> Iterator[cl.Device]:
         yield from platform.get_devices()
 
 
-def _memory() -> Path:
-    return cache_dir() / "probes.json"
-
-
 def _recall() -> dict[str, str]:
     try:
-        return dict(json.loads(_memory().read_text(encoding="utf-8")))
+        return dict(json.loads((cache_folder() / MEMORY).read_text(encoding="utf-8")))
     except (FileNotFoundError, json.JSONDecodeError):
-        return {}  # never asked before, or not a file of ours: ask again
+        return {}  # never asked before, or not a file of ours: ask the device
 
 
 def _remember(answers: dict[str, str]) -> None:
     try:
-        write_whole(_memory(), json.dumps(answers, indent=1))
-    except OSError as error:
-        warnings.warn(f"svgf_cl will probe its devices anew in every run: {error}", stacklevel=3)
+        cache_folder().mkdir(parents=True, exist_ok=True)
+        with written_whole(cache_folder() / MEMORY) as aside:
+            aside.write_text(json.dumps(answers, indent=1), encoding="utf-8")
+    except (OSError, SvgfError) as error:
+        warnings.warn(f"svgf_cl will probe its devices in every run: {error}", stacklevel=3)
 
 
 def _main(wanted: str) -> None:

@@ -75,15 +75,22 @@ def _build(context: cl.Context, device: cl.Device, stage: str, flags: tuple[str,
             # Drivers report success in their log. Whoever wants to read it sets pyopencl's own variable.
             if not os.environ.get("PYOPENCL_COMPILER_OUTPUT"):
                 warnings.simplefilter("ignore", cl.CompilerWarning)
-            return cl.Program(context, source(stage)).build(options=list(flags), devices=[device])
+            program: cl.Program = cl.Program(context, source(stage)).build(options=list(flags), devices=[device])
+            return program
     except cl.Error as error:
         raise DeviceError(
             f"{stage}.cl does not build on this device\n"
             f"device:  {device.name} ({device.platform.name})\n"
             f"driver:  {device.driver_version}\n"
             f"options: {' '.join(flags)}\n"
-            f"log:\n{error}"
+            f"log:\n{_log(str(error))}"
         ) from error
+
+
+def _log(message: str) -> str:
+    # pyopencl wraps the compiler's log in its own account of devices and options; without either, all of it is shown.
+    log = message.partition(">:\n\n")[2] or message
+    return log.partition("\n(options: ")[0].strip()
 
 
 def _literal(value: Define) -> str:

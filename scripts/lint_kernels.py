@@ -1,0 +1,58 @@
+"""Checks every kernel with clang, for each combination of the macros that it reads; needs no OpenCL device."""
+
+from __future__ import annotations
+
+import itertools
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+
+from svgf_cl import programs
+
+MACROS = {
+    "VW": (1, 4, 8, 16),
+    "SIGNALS": (1, 2),
+    "MOTION": (2, 3),
+    "HAS_ALBEDO": (0, 1),
+    "HAS_EMISSION": (0, 1),
+    "HAS_ID": (0, 1),
+    "TAA": (0, 1),
+    "LOG2_SIGMA_NORMAL": (0, 7),
+}
+# -Wundef: a macro that a kernel reads and this table lacks is an error, never a silent 0.
+LANGUAGE = ("-x", "cl", "-cl-std=CL1.2", "-target", "spir64", "-Xclang", "-finclude-default-header")
+WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wundef", "-Werror")
+
+
+def combinations(source: str) -> Iterator[dict[str, int]]:
+    """All values of the macros that a source reads, comments aside; a macro it does not read cannot change it."""
+    code = re.sub(r"//.*", "", source)
+    names = [name for name in MACROS if re.search(rf"\b{name}\b", code)]
+    for values in itertools.product(*(MACROS[name] for name in names)):
+        yield dict(zip(names, values, strict=True))
+
+
+def check(stage: str, macros: dict[str, int]) -> str:
+    """Clang's complaints about a stage, empty if there are none."""
+    defines = [f"-D{name}={value}" for name, value in macros.items()]
+    command = ["clang", "-fsyntax-only", *LANGUAGE, *WARNINGS, *defines, "-"]
+    clang = subprocess.run(command, input=programs.source(stage), text=True, capture_output=True)
+    return f"kernels/{stage}.cl with {' '.join(defines)}:\n{clang.stderr}" if clang.returncode else ""
+
+
+def main() -> int:
+    if shutil.which("clang") is None:
+        print("lint_kernels: clang is missing; install it, e.g. apt-get install clang", file=sys.stderr)
+        return 1
+    jobs = [(stage, macros) for stage in programs.stages() for macros in combinations(programs.source(stage))]
+    with ThreadPoolExecutor() as pool:
+        complaints = list(filter(None, pool.map(lambda job: check(*job), jobs)))
+    print(*complaints[:3], f"{len(jobs)} kernel variants checked, {len(complaints)} with errors", sep="\n")
+    return 1 if complaints else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
