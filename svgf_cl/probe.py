@@ -112,8 +112,8 @@ def _listed() -> Iterator[cl.Device]:
 def _recall() -> dict[str, str]:
     try:
         return dict(json.loads((cache_folder() / MEMORY).read_text(encoding="utf-8")))
-    except (FileNotFoundError, json.JSONDecodeError):
-        return {}  # never asked before, or not a file of ours: ask the device
+    except (OSError, json.JSONDecodeError):
+        return {}  # never asked before, unreadable, or not ours: ask the device
 
 
 def _remember(answers: dict[str, str]) -> None:

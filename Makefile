@@ -1,0 +1,32 @@
+# Front door. Everything runs in .venv, which the first target that needs it sets up, with an OpenCL device that works.
+PYTHON ?= python3
+BIN := .venv/bin
+READY := .venv/.ready
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test lint bench clean
+
+help:  ## list the targets
+	@sed -n 's/^\([a-z]*\):.*## /\1	/p' $(MAKEFILE_LIST) | expand -t 8
+
+demo: $(READY)  ## render a built-in scene with noise and denoise it
+	$(BIN)/svgf-cl demo
+
+test: $(READY)  ## run the tests
+	$(BIN)/python -m pytest -n auto --maxprocesses 8
+
+lint: $(READY)  ## check style, types and kernels (needs clang)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/python scripts/lint_kernels.py
+
+bench: $(READY)  ## run the benchmarks
+	$(BIN)/python -m pytest benchmarks
+
+clean:  ## remove what the other targets made
+	rm -rf .venv build *.egg-info .*_cache
+
+$(READY): pyproject.toml setup.py scripts/set_up
+	PYTHON=$(PYTHON) scripts/set_up
+	@touch $@
