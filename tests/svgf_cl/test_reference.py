@@ -26,7 +26,7 @@ from svgf_cl.reference import (
     temporal,
     variance,
 )
-from svgf_cl.reference_taps import Array, depth_gradient, luminance, shifted
+from svgf_cl.reference_taps import Array, depth_gradient, luminance, shifted, smoothed
 from svgf_cl.settings import Settings
 
 SHAPE = (12, 14)
@@ -112,6 +112,9 @@ class TestDemodulate:
         guides = guides_of(wall(motion=(0, 0, np.nan)))
         assert_array_equal(guides.motion[0, 0], (-1e6, -1e6, 0))
 
+    def test_motion_is_clamped(self) -> None:
+        assert_array_equal(guides_of(wall(motion=(1e30, -1e30))).motion[0, 0], (1e6, -1e6, 0))
+
 
 class TestGradient:
     def test_plane(self) -> None:
@@ -189,6 +192,14 @@ class TestTemporal:
         assert errors[63] < 0.4 * errors[3]
         assert errors[3] < 0.4 * errors[0]
 
+    def test_alpha_bounds_the_new_share_from_below(self) -> None:
+        illumination, guides = demodulate(wall(color=6))
+        history = history_of(wall(), 1, 0.5, length=99.0)
+        result = temporal(illumination, guides, history, Settings(alpha_color=0.2, alpha_moments=0.4))
+        assert_allclose(result.illumination, 1 + 0.2 * 5)
+        assert_allclose(result.mean, 1 + 0.4 * 5)
+        assert_allclose(result.variance, 0.6 * (0.5 + 0.4 * 25))
+
     def test_length_stops_at_1024(self) -> None:
         illumination, guides = demodulate(wall())
         assert_array_equal(
@@ -253,6 +264,13 @@ class TestTemporal:
         flat = replace(guides, depth=np.roll(guides.depth, 3, axis=1))
         assert not consistent(x + 3, y, guides, flat, tight)[0, :, :-3].any()
 
+    @pytest.mark.parametrize(("pixels", "same"), [(0.7, True), (0.8, False)])
+    def test_depth_may_be_a_pixel_of_slope_off(self, pixels: float, same: bool) -> None:
+        y, x = np.indices(SHAPE)
+        guides = guides_of(wall(depth=8 + 0.5 * x - 0.25 * y))
+        other = replace(guides, depth=guides.depth + pixels)
+        assert (consistent(x[None], y[None], guides, other, Settings(depth_threshold=0)) == same).all()
+
 
 class TestVariance:
     def test_short_history_looks_around(self, rng: np.random.Generator) -> None:
@@ -281,6 +299,17 @@ class TestAtrous:
         centre, tap = (3 / 8) ** 2, 3 / 8 * 1 / 4 * w_z * w_n * w_l
         assert_allclose(color[0, 0, 0], (centre + 3 * tap) / (centre + tap), rtol=1e-5)
         assert_allclose(after[0, 0, 0], (4 * centre**2 + tap**2) / (centre + tap) ** 2, rtol=1e-5)
+
+    def test_depth_weight_of_a_distant_tap(self) -> None:
+        y, x = np.indices(SHAPE)
+        guides = guides_of(wall(depth=8 + 0.5 * x - 0.25 * y))
+        weight = surface_weight(guides, depth_gradient(guides.depth), (2, -1), 4, Settings(sigma_depth=2))
+        slope = 2 * 0.5 + 0.25
+        assert_allclose(weight[6, 3], np.exp(-4 * slope / (4 * (2 * slope + 1e-3 * 8 * 2))))
+
+    def test_smoothed_variance_is_that_of_hits(self, rng: np.random.Generator) -> None:
+        hit = guides_of(bumpy(rng, misses=0.3)).hit
+        assert_allclose(smoothed(np.where(hit, 2.0, 100.0)[None], hit)[0][hit], 2)
 
     @pytest.mark.parametrize("offset", [(1, 0), (-2, 1), (2, 2)])
     def test_weight_is_symmetric_on_a_facing_surface(self, rng: np.random.Generator, offset: tuple[int, int]) -> None:
@@ -380,6 +409,15 @@ class TestPipeline:
             out = reference.denoise(f)
             assert np.isfinite(out).all()
             assert all(np.isfinite(stage).all() for stage in reference.stages.values())
+
+    def test_colour_history_is_the_first_level(self, rng: np.random.Generator) -> None:
+        reference = Reference(SHAPE)
+        reference.denoise(bumpy(rng))
+        assert reference.history is not None
+        kept = reference.history.accumulated
+        assert_array_equal(kept.illumination, reference.stages["illumination_0"])
+        assert (kept.illumination != reference.stages["illumination_1"]).any()
+        assert_array_equal(kept.variance, reference.stages["moment_variance"])
 
     def test_reset_forgets(self, rng: np.random.Generator) -> None:
         frames = [bumpy(rng) for _ in range(2)]
