@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import functools
 import math
+import numbers
 import os
 import threading
 import warnings
@@ -98,7 +99,7 @@ def _literal(value: Define) -> str:
         if not value or any(character.isspace() for character in value):
             raise ValueError(f"a macro's text must not be empty or hold spaces, got {value!r}")
         return value
-    if isinstance(value, int):
+    if isinstance(value, numbers.Integral):  # NumPy's integers too
         return str(int(value))
     if not math.isfinite(value):
         raise ValueError(f"a macro must be a finite number, got {value}")

@@ -1,0 +1,204 @@
+"""Listing and choosing, on devices that do not exist; the real one only where it matters."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import pyopencl as cl
+import pytest
+
+from svgf_cl import DeviceError, devices, intel_runtime, probe
+
+POCL = "Portable Computing Language"
+INTEL = intel_runtime.PLATFORM
+
+
+@dataclass(eq=False)
+class FakeDevice:
+    name: str
+    type: int = cl.device_type.CPU
+    reason: str = ""
+    max_compute_units: int = 8
+    max_clock_frequency: int = 1000
+    host_unified_memory: bool = False
+    native_vector_width_float: int = 16
+    driver_version: str = "1.0"
+    platform: FakePlatform | None = None
+
+
+@dataclass(eq=False)
+class FakePlatform:
+    name: str
+    devices: list[FakeDevice] = field(default_factory=list)
+    version: str = "OpenCL 3.0"
+
+    def __post_init__(self) -> None:
+        for device in self.devices:
+            device.platform = self
+
+    def get_devices(self) -> list[FakeDevice]:
+        return self.devices
+
+
+@pytest.fixture(autouse=True)
+def free_choice(monkeypatch):
+    monkeypatch.delenv("PYOPENCL_CTX", raising=False)
+
+
+@pytest.fixture
+def machine(monkeypatch):
+    """A function that pretends that exactly the given platforms are installed."""
+
+    def install(*platforms: FakePlatform) -> None:
+        monkeypatch.setattr(cl, "get_platforms", lambda: list(platforms))
+        monkeypatch.setattr(intel_runtime, "register", lambda: None)
+        monkeypatch.setattr(intel_runtime, "find", lambda: None)
+        monkeypatch.setattr(probe, "reason", lambda device, *, refresh: device.reason)
+
+    return install
+
+
+def gpu(name: str, **properties) -> FakeDevice:
+    return FakeDevice(name, cl.device_type.GPU, **properties)
+
+
+def cl_error(kind: type[cl.Error], code: int) -> cl.Error:
+    return kind(cl._cl._ErrorRecord(msg="the driver is unwell", code=code, routine="clSomething"))
+
+
+@pytest.mark.parametrize(
+    ("slower", "faster"),
+    [
+        (FakePlatform(POCL, [FakeDevice("slower", max_compute_units=512)]), FakePlatform("A", [gpu("faster")])),
+        (FakePlatform("A", [FakeDevice("slower", cl.device_type.ACCELERATOR)]), FakePlatform("B", [gpu("faster")])),
+        (
+            FakePlatform("A", [gpu("slower", host_unified_memory=True, max_compute_units=96)]),
+            FakePlatform("B", [gpu("faster", max_compute_units=28)]),
+        ),
+        (
+            FakePlatform("A", [gpu("slower", max_compute_units=20, max_clock_frequency=1000)]),
+            FakePlatform("B", [gpu("faster", max_compute_units=10, max_clock_frequency=2001)]),
+        ),
+        (
+            FakePlatform(POCL, [FakeDevice("slower")]),
+            FakePlatform(INTEL, [FakeDevice("faster", max_clock_frequency=0)]),
+        ),
+        (FakePlatform("rusticl", [FakeDevice("slower")]), FakePlatform(POCL, [FakeDevice("faster")])),
+        (
+            FakePlatform("Oclgrind", [FakeDevice("slower", cl.device_type.CPU | cl.device_type.GPU)]),
+            FakePlatform("rusticl", [FakeDevice("faster")]),
+        ),
+        (
+            FakePlatform("A", [gpu("slower", reason="it is broken")]),
+            FakePlatform(POCL, [FakeDevice("faster")]),
+        ),
+    ],
+    ids=["GPU", "accelerator", "discrete", "units x clock", "Intel", "known CPU", "simulator", "works"],
+)
+def test_fastest_working_device_is_chosen_in_either_order(machine, slower, faster):
+    for platforms in ((slower, faster), (faster, slower)):
+        machine(*platforms)
+        assert devices.default_device().name == "faster"
+        assert [report.device for report in devices.list_devices() if report.is_default] == ["faster"]
+
+
+def test_the_loaders_order_breaks_ties(machine):
+    machine(FakePlatform("A", [gpu("first"), gpu("second")]))
+    assert devices.default_device().name == "first"
+
+
+@pytest.mark.parametrize("name", ["1", "1:0", "other", "other:slow"])
+def test_environment_names_the_device(machine, monkeypatch, name):
+    machine(FakePlatform("A", [gpu("fast")]), FakePlatform("Other", [FakeDevice("slow")]))
+    monkeypatch.setenv("PYOPENCL_CTX", name)
+    assert devices.default_device().name == "slow"
+
+
+@pytest.mark.parametrize(
+    ("name", "complaint"),
+    [
+        ("0:1", "does not work"),
+        ("nothing", "names no device"),
+        ("0:7", "names no device"),
+        ("0:0,1", "names 2 devices"),
+    ],
+)
+def test_environment_names_no_usable_device(machine, monkeypatch, name, complaint):
+    machine(FakePlatform("A", [gpu("good"), gpu("bad", reason="it is broken")]))
+    monkeypatch.setenv("PYOPENCL_CTX", name)
+    with pytest.raises(DeviceError, match=complaint) as error:
+        devices.default_device()
+    assert name in str(error.value)
+    assert "it is broken" in str(error.value)
+    assert not any(report.is_default for report in devices.list_devices())
+
+
+def test_error_lists_every_device_and_what_to_install(machine):
+    machine(
+        FakePlatform("A", [gpu("one", reason="no memory")]), FakePlatform("B", [FakeDevice("two", reason="no CPU")])
+    )
+    with pytest.raises(DeviceError) as error:
+        devices.default_device()
+    for text in ("one", "no memory", "two", "no CPU", "pocl-opencl-icd", "svgf_cl[cpu]"):
+        assert text in str(error.value)
+
+
+def test_memory_is_doubted_before_giving_up(machine, monkeypatch):
+    machine(FakePlatform("A", [gpu("repaired")]))
+    monkeypatch.setattr(probe, "reason", lambda device, *, refresh: "" if refresh else "was broken")
+    assert not devices.list_devices()[0].works
+    assert devices.default_device().name == "repaired"
+
+
+def test_no_platform_at_all(machine, monkeypatch):
+    machine()
+
+    def none_found():
+        raise cl_error(cl.LogicError, cl.status_code.PLATFORM_NOT_FOUND_KHR)
+
+    monkeypatch.setattr(cl, "get_platforms", none_found)
+    assert devices.list_devices() == []
+    with pytest.raises(DeviceError, match="lists no device"):
+        devices.default_device()
+
+
+def test_a_platform_that_cannot_list_its_devices_does_not_hide_the_others(machine, monkeypatch):
+    broken = FakePlatform("Broken")
+
+    def fail():
+        raise cl_error(cl.RuntimeError, cl.status_code.OUT_OF_HOST_MEMORY)
+
+    monkeypatch.setattr(broken, "get_devices", fail)
+    machine(broken, FakePlatform(POCL, [FakeDevice("good")]))
+    listed = devices.list_devices()
+    assert [report.works for report in listed] == [False, True]
+    assert "unwell" in listed[0].reason
+    assert listed[1].selector == "1:0"
+    assert listed[1].is_default
+
+
+def test_an_installed_but_unlisted_intel_runtime_is_reported(machine, monkeypatch):
+    machine(FakePlatform(POCL, [FakeDevice("good")]))
+    monkeypatch.setattr(intel_runtime, "why_unlisted", lambda names: f"unlike {sorted(names)}")
+    assert devices.list_devices()[-1].reason == f"unlike {[POCL]}"
+
+
+@pytest.mark.parametrize(("native", "width"), [(0, 4), (1, 4), (4, 8), (8, 16), (16, 16)])
+def test_vector_width_of_a_cpu(native, width):
+    assert devices.vector_width(FakeDevice("cpu", native_vector_width_float=native)) == width
+
+
+def test_vector_width_of_a_gpu():
+    assert devices.vector_width(gpu("gpu", native_vector_width_float=4)) == 1
+
+
+def test_this_machine_has_a_working_device(queue):
+    works = [report.handle for report in devices.list_devices() if report.works]
+    assert queue.device in works
+
+
+def test_queues_have_profiling_and_share_their_devices_context(queue):
+    assert queue.properties & cl.command_queue_properties.PROFILING_ENABLE
+    other = devices.create_queue(queue.device)
+    assert other != queue
+    assert other.context == queue.context
