@@ -46,8 +46,7 @@ inline void add_tap(Sum *sum, Centre centre, floatv depth_scale, float h, const 
     cosine += centre.normal[2] * load(guide + (NORMAL + 2) * size.w + tap);
     const floatv surface = h * normal_weight(cosine);
     const floatv off_surface = fabs(centre.z - load(guide + DEPTH * size.w + tap)) * depth_scale;
-#pragma unroll
-    for (int s = 0; s < SIGNALS; ++s) {
+    UNROLLED_FOR(s, SIGNALS) {
         __global const float *color = source + 3 * s * size.w + tap;
         const floatv r = load(color), g = load(color + size.w), b = load(color + 2 * size.w);
         const floatv off_luminance = fabs(centre.luminance[s] - luminance(r, g, b)) * centre.luminance_scale[s];
@@ -71,15 +70,15 @@ __kernel void atrous(const int4 size, const int step, const float sigma_depth, c
 
     Centre centre;
     centre.z = load(depth + here);
-    for (int k = 0; k < 3; ++k) centre.normal[k] = load(guide + (NORMAL + k) * size.w + here);
+    UNROLLED_FOR(k, 3) centre.normal[k] = load(guide + (NORMAL + k) * size.w + here);
     Sum sum;
-    for (int s = 0; s < SIGNALS; ++s) {
+    UNROLLED_FOR(s, SIGNALS) {
         const floatv l = luminance_at(size, s, here, source);
         const floatv deviation = sqrt(smooth_variance(size, here, depth, source + (VARIANCE + s) * size.w));
         centre.luminance[s] = l;
         centre.luminance_scale[s] = 1.0f / (sigma_luminance * deviation + 1e-3f * l + 1e-12f);
         const float h = spline[0] * spline[0];
-        for (int k = 0; k < 3; ++k) sum.color[s][k] = h * load(source + (3 * s + k) * size.w + here);
+        UNROLLED_FOR(k, 3) sum.color[s][k] = h * load(source + (3 * s + k) * size.w + here);
         sum.variance[s] = h * h * load(source + (VARIANCE + s) * size.w + here);
         sum.weight[s] = (floatv)(h);
     }
@@ -98,9 +97,9 @@ __kernel void atrous(const int4 size, const int step, const float sigma_depth, c
         }
     }
 
-    for (int s = 0; s < SIGNALS; ++s) {
+    UNROLLED_FOR(s, SIGNALS) {
         const floatv scale = 1.0f / sum.weight[s];
-        for (int k = 0; k < 3; ++k) store(sum.color[s][k] * scale, target + (3 * s + k) * size.w + here);
+        UNROLLED_FOR(k, 3) store(sum.color[s][k] * scale, target + (3 * s + k) * size.w + here);
         store(sum.variance[s] * scale * scale, target + (VARIANCE + s) * size.w + here);
     }
 }

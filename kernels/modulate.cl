@@ -23,9 +23,9 @@ typedef struct {
 // Zero where any channel is not finite: clamping or scaling an infinity would leave a firefly or a NaN.
 inline Color finite_color(__global const float *image, intv i) {
     Color c;
-    for (int k = 0; k < 3; ++k) c.channel[k] = gather(image, i + k);
+    UNROLLED_FOR(k, 3) c.channel[k] = gather(image, i + k);
     const intv good = isfinite(c.channel[0]) & isfinite(c.channel[1]) & isfinite(c.channel[2]);
-    for (int k = 0; k < 3; ++k) c.channel[k] = where(good, c.channel[k], (floatv)(0.0f));
+    UNROLLED_FOR(k, 3) c.channel[k] = where(good, c.channel[k], (floatv)(0.0f));
     return c;
 }
 
@@ -66,7 +66,7 @@ __kernel void demodulate(const int4 size,
     const floatv length2 = n.channel[0] * n.channel[0] + n.channel[1] * n.channel[1] + n.channel[2] * n.channel[2];
     const intv hit = inside & isfinite(z) & (z > 0.0f) & isfinite(length2) & (length2 > 1e-12f);
     const floatv to_unit = where(hit, 1.0f / sqrt(length2), (floatv)(0.0f));
-    for (int k = 0; k < 3; ++k)
+    UNROLLED_FOR(k, 3)
         store(where(hit, n.channel[k] * to_unit, (floatv)(0.0f)), guide + (NORMAL + k) * size.w + here);
     store(where(hit, z, (floatv)(0.0f)), guide + DEPTH * size.w + here);
 #if HAS_ID
@@ -79,16 +79,16 @@ __kernel void demodulate(const int4 size,
     Color radiance[1] = {finite_color(color, i3)};
 #if HAS_EMISSION
     const Color glow = finite_color(emission, i3);
-    for (int k = 0; k < 3; ++k) radiance[0].channel[k] -= known_emission(glow, k);
+    UNROLLED_FOR(k, 3) radiance[0].channel[k] -= known_emission(glow, k);
 #endif
 #endif
-    for (int k = 0; k < 3; ++k) {
+    UNROLLED_FOR(k, 3) {
 #if HAS_ALBEDO
         const floatv a = known_albedo(albedo, i3 + k);
 #else
         const floatv a = (floatv)(1.0f);
 #endif
-        for (int s = 0; s < SIGNALS; ++s)
+        UNROLLED_FOR(s, SIGNALS)
             put_illumination(radiance[s].channel[k] / a, inside, illumination + (3 * s + k) * size.w + here);
     }
 }
@@ -110,7 +110,7 @@ __kernel void modulate(const int4 size,
 #if HAS_EMISSION
     const Color glow = finite_color(emission, i3);
 #endif
-    for (int k = 0; k < 3; ++k) {
+    UNROLLED_FOR(k, 3) {
         floatv c = load(illumination + k * size.w + here);
 #if SIGNALS == 2
         c += load(illumination + (3 + k) * size.w + here);

@@ -1,11 +1,12 @@
 // Temporal antialiasing after tone mapping, back to linear HDR at the end.
 //
-//   t = YCoCg(out / (1 + l(out))),  h = clamp(history at p + motion, min 3x3 t, max 3x3 t),  t := h + alpha (t - h)
+//   t = YCoCg(out) / (1 + Y(out)),  h = clamp(history at p + motion, min 3x3 t, max 3x3 t),  t := h + alpha (t - h)
 //
 // in   motion, modulated colour, history (YCoCg, tone mapped)
 // out  next history; out: the user's (H, W, 3) array, linear HDR
 // Schied et al. 2017, section 5; Karis, High-Quality Temporal Supersampling, 2014. Tone mapping comes first so that one
-// bright sample cannot outweigh its neighbours.
+// bright sample cannot outweigh its neighbours. It goes by Y, not by luminance: the clamp bounds Y, so the inverse cannot
+// make a firefly of two colours.
 
 typedef struct {
     floatv channel[3];  // Y, Co, Cg
@@ -13,13 +14,13 @@ typedef struct {
 
 inline Tone tone_map(const int4 size, int i, __global const float *color) {
     floatv c[3];
-    for (int k = 0; k < 3; ++k) c[k] = load(color + k * size.w + i);
-    const floatv scale = 1.0f / (1.0f + luminance(c[0], c[1], c[2]));
-    for (int k = 0; k < 3; ++k) c[k] *= scale;
+    UNROLLED_FOR(k, 3) c[k] = load(color + k * size.w + i);
     Tone t;
     t.channel[0] = 0.25f * c[0] + 0.5f * c[1] + 0.25f * c[2];
     t.channel[1] = 0.5f * c[0] - 0.5f * c[2];
     t.channel[2] = -0.25f * c[0] + 0.5f * c[1] - 0.25f * c[2];
+    const floatv scale = 1.0f / (1.0f + t.channel[0]);
+    UNROLLED_FOR(k, 3) t.channel[k] *= scale;
     return t;
 }
 
@@ -41,7 +42,7 @@ __kernel void taa(const int4 size, const float alpha_taa, __global const float *
         for (int dx = -1; dx <= 1; ++dx) {
             const Tone t = tone_map(size, here + dy * size.z + dx, color);
             const intv inside = (x + dx + LANES >= 0) & (x + dx + LANES < size.x);
-            for (int k = 0; k < 3; ++k) {
+            UNROLLED_FOR(k, 3) {
                 low.channel[k] = where(inside, min(low.channel[k], t.channel[k]), low.channel[k]);
                 high.channel[k] = where(inside, max(high.channel[k], t.channel[k]), high.channel[k]);
             }
@@ -52,23 +53,24 @@ __kernel void taa(const int4 size, const float alpha_taa, __global const float *
     const floatv fx = sx - floor(sx), fy = sy - floor(sy);
     const intv left = to_int(floor(sx)), top = to_int(floor(sy));
     Tone h;
-    for (int k = 0; k < 3; ++k) h.channel[k] = (floatv)(0.0f);
-    for (int t = 0; t < 4; ++t) {
+    UNROLLED_FOR(k, 3) h.channel[k] = (floatv)(0.0f);
+    UNROLLED_FOR(t, 4) {
         const floatv w = (t & 1 ? fx : 1.0f - fx) * (t & 2 ? fy : 1.0f - fy);
         const intv tap = at_lanes(size, clamp(left + (t & 1), 0, size.x - 1), clamp(top + (t >> 1), 0, size.y - 1));
-        for (int k = 0; k < 3; ++k) h.channel[k] += w * gather(history + k * size.w, tap);
+        UNROLLED_FOR(k, 3) h.channel[k] += w * gather(history + k * size.w, tap);
     }
 
-    const floatv alpha = where(seen, (floatv)(alpha_taa), (floatv)(1.0f));
+    // Before the first frame the history is NaN.
+    const floatv alpha = where(seen & isfinite(h.channel[0]), (floatv)(alpha_taa), (floatv)(1.0f));
     Tone t;
-    for (int k = 0; k < 3; ++k) {
+    UNROLLED_FOR(k, 3) {
         const floatv kept = clamp(h.channel[k], low.channel[k], high.channel[k]);
-        t.channel[k] = kept + alpha * (now.channel[k] - kept);
+        t.channel[k] = where(alpha < 1.0f, kept + alpha * (now.channel[k] - kept), now.channel[k]);
         store(where(x + LANES < size.x, t.channel[k], (floatv)(0.0f)), next_history + k * size.w + here);
     }
     const floatv base = t.channel[0] - t.channel[2];
     const floatv rgb[3] = {base + t.channel[1], t.channel[0] + t.channel[2], base - t.channel[1]};
-    const floatv scale = 1.0f / max(1.0f - luminance(rgb[0], rgb[1], rgb[2]), (floatv)(1e-6f));
-    for (int k = 0; k < 3; ++k)
+    const floatv scale = 1.0f / max(1.0f - t.channel[0], (floatv)(1e-6f));
+    UNROLLED_FOR(k, 3)
         scatter(max(rgb[k] * scale, (floatv)(0.0f)), size, x, y, k, out);
 }

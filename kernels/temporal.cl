@@ -10,11 +10,13 @@
 // that nothing cancels for bright, steady pixels.
 
 #define MAX_LENGTH 1024.0f
-#define NOWHERE -1e6f  // a position outside every image, yet a safe integer
+#define FAR 1e6f  // a motion out of every image, yet a safe integer
 
-// What a tap of the previous frame is held against.
+// What a tap of the previous frame is held against. The position p' is kept as a whole pixel and a fraction of motion:
+// added up in float32 a fraction would lose bits to the column's number.
 typedef struct {
-    floatv x, y;       // p'
+    intv left, top;
+    floatv fx, fy;
     floatv depth;      // expected at p'
     floatv tolerance;  // of depth
     Gradient gradient;
@@ -25,10 +27,11 @@ typedef struct {
 } Expected;
 
 typedef struct {
-    intv index;
+    Places at;
     floatv weight;
 } Tap;
 
+// Weighted mean over the taps seen so far.
 typedef struct {
     floatv color[SIGNALS][3], mean[SIGNALS], variance[SIGNALS], length, weight;
 } History;
@@ -37,77 +40,81 @@ inline Expected expect(const int4 size, int x, int y, __global const float *moti
                        float depth_threshold) {
     const int here = at(size, x, y);
     const intv i = interleaved(size, x, y, MOTION);
-    floatv mx = gather(motion, i), my = gather(motion, i + 1);
+    const floatv mx = gather(motion, i), my = gather(motion, i + 1);
     intv good = isfinite(mx) & isfinite(my);
 #if MOTION == 3
-    floatv mz = gather(motion, i + 2);
+    const floatv mz = gather(motion, i + 2);
     good &= isfinite(mz);
 #else
     const floatv mz = (floatv)(0.0f);
 #endif
+    const floatv depth = load(guide + DEPTH * size.w + here) + mz;
+    good &= isfinite(depth);
     Expected e;
-    e.x = where(good, clamp(to_float(x + LANES) + mx, NOWHERE, -NOWHERE), (floatv)(NOWHERE));
-    e.y = where(good, clamp(to_float((intv)(y)) + my, NOWHERE, -NOWHERE), (floatv)(NOWHERE));
-    e.depth = load(guide + DEPTH * size.w + here) + mz;
+    const floatv safe_x = where(good, clamp(mx, -FAR, FAR), (floatv)(FAR));
+    const floatv safe_y = where(good, clamp(my, -FAR, FAR), (floatv)(FAR));
+    e.left = x + LANES + to_int(floor(safe_x));
+    e.top = y + to_int(floor(safe_y));
+    e.fx = safe_x - floor(safe_x);
+    e.fy = safe_y - floor(safe_y);
+    e.depth = depth;
     e.gradient = depth_gradient(guide + DEPTH * size.w, size.z, here);
     e.tolerance = depth_threshold * e.depth + fabs(e.gradient.x) + fabs(e.gradient.y);
-    for (int k = 0; k < 3; ++k) e.normal[k] = load(guide + (NORMAL + k) * size.w + here);
+    UNROLLED_FOR(k, 3) e.normal[k] = load(guide + (NORMAL + k) * size.w + here);
 #if HAS_ID
     e.id = load_int((__global const int *)guide + ID * size.w + here);
 #endif
     return e;
 }
 
-// The tap at integer position (x, y), its weight 0 unless it shows the expected surface. Positions outside the image are
-// moved into the halo, where nothing was hit.
-inline Tap consistent_tap(const int4 size, Expected e, intv x, intv y, floatv weight, __global const float *previous_guide,
-                          float normal_threshold) {
+// The tap (dx, dy) off the top left of the footprint, its weight 0 unless it shows the expected surface. Positions outside
+// the image are moved into the halo, where nothing was hit.
+inline Tap consistent_tap(const int4 size, Expected e, intv dx, intv dy, floatv weight,
+                          __global const float *previous_guide, float normal_threshold) {
     Tap tap;
-    tap.index = at_lanes(size, clamp(x, -1, size.x), clamp(y, -1, size.y));
-    const floatv z = gather(previous_guide + DEPTH * size.w, tap.index);
-    const floatv expected = e.depth + e.gradient.x * (to_float(x) - e.x) + e.gradient.y * (to_float(y) - e.y);
+    tap.at = places(at_lanes(size, clamp(e.left + dx, -1, size.x), clamp(e.top + dy, -1, size.y)));
+    const floatv z = fetch(previous_guide + DEPTH * size.w, tap.at);
+    const floatv expected = e.depth + e.gradient.x * (to_float(dx) - e.fx) + e.gradient.y * (to_float(dy) - e.fy);
     floatv cosine = (floatv)(0.0f);
-    for (int k = 0; k < 3; ++k) cosine += e.normal[k] * gather(previous_guide + (NORMAL + k) * size.w, tap.index);
+    UNROLLED_FOR(k, 3) cosine += e.normal[k] * fetch(previous_guide + (NORMAL + k) * size.w, tap.at);
     intv same = (z > 0.0f) & (fabs(z - expected) <= e.tolerance) & (cosine >= normal_threshold);
 #if HAS_ID
-    same &= gather_int((__global const int *)previous_guide + ID * size.w, tap.index) == e.id;
+    same &= fetch_int((__global const int *)previous_guide + ID * size.w, tap.at) == e.id;
 #endif
     tap.weight = where(same, weight, (floatv)(0.0f));
     return tap;
 }
 
-// Weighted mean over the taps; V of a mixture is the mean of V plus the spread of M. Zero where no tap counts.
-inline History mean_of(const int4 size, const Tap *taps, int count, __global const float *history,
-                       __global const float *moments) {
+inline History no_history(void) {
     History h;
-    h.weight = (floatv)(0.0f);
-    for (int t = 0; t < count; ++t) h.weight += taps[t].weight;
-    const floatv scale = where(h.weight > 0.0f, 1.0f / h.weight, (floatv)(0.0f));
-    h.length = (floatv)(0.0f);
-    for (int t = 0; t < count; ++t)
-        h.length += taps[t].weight * scale * gather(moments + LENGTH * size.w, taps[t].index);
-    for (int s = 0; s < SIGNALS; ++s) {
-        __global const float *mean = moments + (MOMENTS + 2 * s) * size.w, *variance = mean + size.w;
+    h.weight = h.length = (floatv)(0.0f);
+    UNROLLED_FOR(s, SIGNALS) {
+        UNROLLED_FOR(k, 3) h.color[s][k] = (floatv)(0.0f);
         h.mean[s] = h.variance[s] = (floatv)(0.0f);
-        for (int k = 0; k < 3; ++k) h.color[s][k] = (floatv)(0.0f);
-        for (int t = 0; t < count; ++t) {
-            const floatv w = taps[t].weight * scale;
-            for (int k = 0; k < 3; ++k) h.color[s][k] += w * gather(history + (3 * s + k) * size.w, taps[t].index);
-            h.mean[s] += w * gather(mean, taps[t].index);
-        }
-        for (int t = 0; t < count; ++t) {
-            const floatv off = gather(mean, taps[t].index) - h.mean[s];
-            h.variance[s] += taps[t].weight * scale * (gather(variance, taps[t].index) + off * off);
-        }
     }
     return h;
+}
+
+// Mixes in one tap. The variance of a mixture is the mean of the variances plus the spread of the means.
+inline void add_tap(History *h, const int4 size, Tap tap, __global const float *history, __global const float *moments) {
+    h->weight += tap.weight;
+    const floatv share = where(h->weight > 0.0f, tap.weight / h->weight, (floatv)(0.0f));
+    h->length += share * (fetch(moments + LENGTH * size.w, tap.at) - h->length);
+    UNROLLED_FOR(s, SIGNALS) {
+        UNROLLED_FOR(k, 3)
+            h->color[s][k] += share * (fetch(history + (3 * s + k) * size.w, tap.at) - h->color[s][k]);
+        __global const float *mean = moments + (MOMENTS + 2 * s) * size.w, *variance = mean + size.w;
+        const floatv off = fetch(mean, tap.at) - h->mean[s];
+        h->mean[s] += share * off;
+        h->variance[s] += share * (fetch(variance, tap.at) - h->variance[s] + (1.0f - share) * off * off);
+    }
 }
 
 inline History select_history(intv mask, History yes, History no) {
     yes.weight = where(mask, yes.weight, no.weight);
     yes.length = where(mask, yes.length, no.length);
-    for (int s = 0; s < SIGNALS; ++s) {
-        for (int k = 0; k < 3; ++k) yes.color[s][k] = where(mask, yes.color[s][k], no.color[s][k]);
+    UNROLLED_FOR(s, SIGNALS) {
+        UNROLLED_FOR(k, 3) yes.color[s][k] = where(mask, yes.color[s][k], no.color[s][k]);
         yes.mean[s] = where(mask, yes.mean[s], no.mean[s]);
         yes.variance[s] = where(mask, yes.variance[s], no.variance[s]);
     }
@@ -126,24 +133,23 @@ __kernel void temporal(const int4 size, const float alpha_color, const float alp
     const Expected e = expect(size, x, y, motion, guide, depth_threshold);
     const intv hit = load(guide + DEPTH * size.w + here) > 0.0f;
 
-    const floatv left = floor(e.x), top = floor(e.y);
-    const floatv fx = e.x - left, fy = e.y - top;
-    Tap bilinear[4];
-    for (int t = 0; t < 4; ++t) {
-        const floatv w = (t & 1 ? fx : 1.0f - fx) * (t & 2 ? fy : 1.0f - fy);
-        bilinear[t] = consistent_tap(size, e, to_int(left) + (t & 1), to_int(top) + (t >> 1), w, previous_guide,
-                                     normal_threshold);
+    History h = no_history();
+    UNROLLED_FOR(t, 4) {
+        const floatv w = (t & 1 ? e.fx : 1.0f - e.fx) * (t & 2 ? e.fy : 1.0f - e.fy);
+        const Tap tap = consistent_tap(size, e, (intv)(t & 1), (intv)(t >> 1), w, previous_guide, normal_threshold);
+        add_tap(&h, size, tap, history, previous_moments);
     }
-    History h = mean_of(size, bilinear, 4, history, previous_moments);
 
     const intv lost = hit & (h.weight <= 0.01f);
     if (any_lane(lost)) {  // thin geometry: look around
-        const intv nx = to_int(floor(e.x + 0.5f)), ny = to_int(floor(e.y + 0.5f));
-        Tap around[9];
-        for (int t = 0; t < 9; ++t)
-            around[t] = consistent_tap(size, e, nx + (t % 3 - 1), ny + (t / 3 - 1), (floatv)(1.0f), previous_guide,
-                                       normal_threshold);
-        h = select_history(lost, mean_of(size, around, 9, history, previous_moments), h);
+        const intv nx = to_int(floor(e.fx + 0.5f)), ny = to_int(floor(e.fy + 0.5f));
+        History around = no_history();
+        for (int t = 0; t < 9; ++t) {
+            const Tap tap = consistent_tap(size, e, nx + (t % 3 - 1), ny + (t / 3 - 1), (floatv)(1.0f), previous_guide,
+                                           normal_threshold);
+            add_tap(&around, size, tap, history, previous_moments);
+        }
+        h = select_history(lost, around, h);
     }
 
     const intv known = hit & (h.weight > 0.01f);
@@ -151,9 +157,9 @@ __kernel void temporal(const int4 size, const float alpha_color, const float alp
     const floatv newest = 1.0f / max(length, (floatv)(1.0f));
     const floatv a_color = max(newest, (floatv)(alpha_color)), a_moments = max(newest, (floatv)(alpha_moments));
     store(length, moments + LENGTH * size.w + here);
-    for (int s = 0; s < SIGNALS; ++s) {
+    UNROLLED_FOR(s, SIGNALS) {
         floatv c[3];
-        for (int k = 0; k < 3; ++k) {
+        UNROLLED_FOR(k, 3) {
             const int plane = (3 * s + k) * size.w;
             c[k] = load(illumination + plane + here);
             const floatv blended = h.color[s][k] + a_color * (c[k] - h.color[s][k]);

@@ -1,13 +1,15 @@
 // Variance of luminance: temporal where history is long enough, else estimated over space.
 //
-//   N >= 4:  Var = V
+//   N >= 3.5:  Var = V
 //   else:    M~ = sum w M / sum w,  Var = 4 / N * sum w (V + (M - M~)^2) / sum w,  over 7x7,  w = w_z w_n
 //
 // in   guide; moments: N, then M and V of each signal
 // out  illumination: its variance plane(s)
 // Schied et al. 2017, section 4.2; the weights are those of the a-trous filter without luminance.
 
+// Frames from which the temporal estimate serves. Asking for 3.5 keeps a resampled length of 4 from failing by rounding.
 #define LONG_HISTORY 4.0f
+#define NEARLY_LONG 3.5f
 #define RADIUS 3
 
 typedef struct {
@@ -16,7 +18,7 @@ typedef struct {
 
 inline void add_tap(Moments *sum, floatv w, const int4 size, int tap, const floatv *centre, __global const float *moments) {
     sum->weight += w;
-    for (int s = 0; s < SIGNALS; ++s) {
+    UNROLLED_FOR(s, SIGNALS) {
         __global const float *mean = moments + (MOMENTS + 2 * s) * size.w;
         const floatv off = load(mean + tap) - centre[s];
         sum->first[s] += w * off;
@@ -33,13 +35,13 @@ inline Moments neighbourhood(const int4 size, int here, float sigma_depth, float
     const Gradient g = depth_gradient(depth, size.z, here);
     Moments sum;
     sum.weight = (floatv)(0.0f);
-    for (int s = 0; s < SIGNALS; ++s) sum.first[s] = sum.second[s] = (floatv)(0.0f);
+    UNROLLED_FOR(s, SIGNALS) sum.first[s] = sum.second[s] = (floatv)(0.0f);
     for (int dy = -RADIUS; dy <= RADIUS; ++dy) {
         for (int dx = -RADIUS; dx <= RADIUS; ++dx) {
             const int tap = here + dy * size.z + dx;
             const floatv scale = depth_scale(g, z, sigma_depth, slope_floor, (float)dx, (float)dy);
             floatv cosine = (floatv)(0.0f);
-            for (int k = 0; k < 3; ++k)
+            UNROLLED_FOR(k, 3)
                 cosine += load(guide + (NORMAL + k) * size.w + here) * load(guide + (NORMAL + k) * size.w + tap);
             floatv w = normal_weight(cosine) * exp_minus(fabs(z - load(depth + tap)) * scale);
             if (dx == 0 && dy == 0) w = (floatv)(1.0f);
@@ -56,21 +58,21 @@ __kernel void variance(const int4 size, const float sigma_depth, const float dep
     if (x >= size.x) return;
     const int here = at(size, x, y);
     const floatv length = load(moments + LENGTH * size.w + here);
-    const intv brief = (length > 0.0f) & (length < LONG_HISTORY);
+    const intv brief = (length > 0.0f) & (length < NEARLY_LONG);
     floatv centre[SIGNALS], result[SIGNALS];
-    for (int s = 0; s < SIGNALS; ++s) {
+    UNROLLED_FOR(s, SIGNALS) {
         centre[s] = load(moments + (MOMENTS + 2 * s) * size.w + here);
         result[s] = load(moments + (MOMENTS + 2 * s + 1) * size.w + here);
     }
     if (any_lane(brief)) {
         const Moments sum = neighbourhood(size, here, sigma_depth, depth_slope_floor, centre, guide, moments);
         const floatv boost = LONG_HISTORY / max(length, (floatv)(1.0f));
-        for (int s = 0; s < SIGNALS; ++s) {
+        UNROLLED_FOR(s, SIGNALS) {
             const floatv off = sum.first[s] / sum.weight;
             const floatv spatial = max(sum.second[s] / sum.weight - off * off, (floatv)(0.0f));
             result[s] = where(brief, boost * spatial, result[s]);
         }
     }
-    for (int s = 0; s < SIGNALS; ++s)
+    UNROLLED_FOR(s, SIGNALS)
         store(where(length > 0.0f, result[s], (floatv)(0.0f)), illumination + (VARIANCE + s) * size.w + here);
 }

@@ -15,8 +15,12 @@ from svgf_cl.planes import Layout
 UserArray = np.ndarray | cl_array.Array
 
 
+# What a buffer holds before the first frame: a guide of zeros shows nothing, so there is no history; NaN is no colour.
+BLANK = {"antialiased": np.nan, "previous antialiased": np.nan}
+
+
 class Buffers:
-    """The planes that a pass table needs, by name; all zero at first, which means: nothing was hit, no history."""
+    """The planes that a pass table needs, by name; they begin as `BLANK` says."""
 
     def __init__(
         self, queue: cl.CommandQueue, layout: Layout, passes: tuple[Pass, ...], inputs: Inputs, *, share: bool
@@ -27,8 +31,10 @@ class Buffers:
         sizes = {slot: max(inputs.planes(name) for name in slots if slots[name] == slot) for slot in slots.values()}
         self.nbytes = sum(layout.nbytes(count) for count in (*planes.values(), *sizes.values()))
         try:
-            scratch = {slot: self._zeros(layout.nbytes(count)) for slot, count in sizes.items()}
-            self._by_name = {name: self._zeros(layout.nbytes(count)) for name, count in planes.items()}
+            scratch = {slot: self._filled(0.0, layout.nbytes(count)) for slot, count in sizes.items()}
+            self._by_name = {
+                name: self._filled(BLANK.get(name, 0.0), layout.nbytes(count)) for name, count in planes.items()
+            }
         except (cl.MemoryError, cl.LogicError) as error:
             raise SvgfError(
                 f"the device {queue.device.name} has no room for {self.nbytes / 2**20:.0f} MiB of planes: {error}"
@@ -56,9 +62,9 @@ class Buffers:
         cl.enqueue_copy(self._queue, result, buffer)
         return result
 
-    def _zeros(self, nbytes: int) -> cl.Buffer:
+    def _filled(self, value: float, nbytes: int) -> cl.Buffer:
         buffer = cl.Buffer(self._queue.context, cl.mem_flags.READ_WRITE, nbytes)
-        cl.enqueue_fill_buffer(self._queue, buffer, np.float32(0), 0, nbytes)
+        cl.enqueue_fill_buffer(self._queue, buffer, np.float32(value), 0, nbytes)
         return buffer
 
 

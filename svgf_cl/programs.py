@@ -23,7 +23,7 @@ from svgf_cl.errors import DeviceError
 HEADER = "common.clh"
 
 # No fast-math: it would allow the compiler to drop the guards against NaN and infinity.
-OPTIONS = ("-cl-std=CL1.2", "-cl-mad-enable")
+OPTIONS = ("-cl-std=CL1.2", "-cl-mad-enable", "-w")
 
 Define = int | float | str
 

@@ -295,7 +295,8 @@ def taa(image: Array, motion: Array, history: Array | None, settings: Settings) 
     history : (H, W, 3), for the next frame.
     """
     shape = motion.shape[:2]
-    current = image / (1 + luminance(image)[..., None]) @ YCOCG_OF_RGB.T
+    current = image @ YCOCG_OF_RGB.T
+    current = current / (1 + current[..., :1])
     result = current
     if history is not None:
         position = reprojected(motion)
@@ -307,7 +308,7 @@ def taa(image: Array, motion: Array, history: Array | None, settings: Settings) 
         inside = ((position >= -0.5) & (position < np.array(shape[::-1]) - 0.5)).all(axis=-1, keepdims=True)
         result = np.where(inside, past + settings.alpha_taa * (current - past), current)
     color = result @ RGB_OF_YCOCG.T
-    return color / np.maximum(1 - luminance(color), 1e-6)[..., None], result
+    return np.maximum(color / np.maximum(1 - result[..., :1], 1e-6), 0), result
 
 
 class Reference:
