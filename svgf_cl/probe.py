@@ -6,6 +6,7 @@ answer is remembered in the cache directory, under everything that may change it
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import signal
@@ -87,8 +88,13 @@ def summary(log: str) -> str:
 
 
 def _run_apart(wanted: str) -> str:
-    # No answer from pyopencl's binary cache: the compiler is what is on trial.
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "PYOPENCL_NO_CACHE": "1"}
+    environment = os.environ | {
+        # The modules of this process, and none that happen to lie in the current folder.
+        "PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path),
+        "PYTHONSAFEPATH": "1",
+        # No answer from pyopencl's binary cache: the compiler is what is on trial.
+        "PYOPENCL_NO_CACHE": "1",
+    }
     command = [sys.executable, "-W", "ignore", "-m", "svgf_cl.probe", wanted]
     try:
         child = subprocess.run(
@@ -106,7 +112,8 @@ def _run_apart(wanted: str) -> str:
 
 def _listed() -> Iterator[cl.Device]:
     for platform in cl.get_platforms():
-        yield from platform.get_devices()
+        with contextlib.suppress(cl.Error):  # svgf_cl.devices says so; the wanted device is another platform's
+            yield from platform.get_devices()
 
 
 def _recall() -> dict[str, str]:
