@@ -31,7 +31,8 @@ __kernel void taa(const int4 size, const float alpha_taa, __global const float *
     if (x >= size.x) return;
     const int here = at(size, x, y);
     const intv i = interleaved(size, x, y, MOTION);
-    const floatv px = to_float(x + LANES) + gather(motion, i), py = to_float((intv)(y)) + gather(motion, i + 1);
+    const floatv mx = gather(motion, i), my = gather(motion, i + 1);
+    const floatv px = to_float(x + LANES) + mx, py = to_float((intv)(y)) + my;
     const float right = (float)size.x - 0.5f, bottom = (float)size.y - 0.5f;
     const intv seen = (px >= -0.5f) & (px < right) & (py >= -0.5f) & (py < bottom);  // false for NaN
 
@@ -49,15 +50,16 @@ __kernel void taa(const int4 size, const float alpha_taa, __global const float *
         }
     }
 
-    const floatv sx = where(seen, px, (floatv)(0.0f)), sy = where(seen, py, (floatv)(0.0f));
+    const floatv sx = where(seen, mx, (floatv)(0.0f)), sy = where(seen, my, (floatv)(0.0f));
     const floatv fx = sx - floor(sx), fy = sy - floor(sy);
-    const intv left = to_int(floor(sx)), top = to_int(floor(sy));
+    const intv left = x + LANES + to_int(floor(sx)), top = y + to_int(floor(sy));
     Tone h;
     UNROLLED_FOR(k, 3) h.channel[k] = (floatv)(0.0f);
     UNROLLED_FOR(t, 4) {
         const floatv w = (t & 1 ? fx : 1.0f - fx) * (t & 2 ? fy : 1.0f - fy);
-        const intv tap = at_lanes(size, clamp(left + (t & 1), 0, size.x - 1), clamp(top + (t >> 1), 0, size.y - 1));
-        UNROLLED_FOR(k, 3) h.channel[k] += w * gather(history + k * size.w, tap);
+        const intv tx = clamp(left + (t & 1), 0, size.x - 1), ty = clamp(top + (t >> 1), 0, size.y - 1);
+        const Places tap = places(at_lanes(size, tx, ty));
+        UNROLLED_FOR(k, 3) h.channel[k] += w * fetch(history + k * size.w, tap);
     }
 
     // Before the first frame the history is NaN.

@@ -325,7 +325,7 @@ class Reference:
     history, antialiased : what the next frame will read, or None (`temporal`'s and `taa`'s history).
     stages : every intermediate result of the last frame by name: demodulated, accumulated (S, H, W, 3); mean,
         moment_variance (S, H, W); length (H, W); variance (S, H, W); and per level i illumination_i (S, H, W, 3) and
-        variance_i (S, H, W); modulated and, if it ran, taa (H, W, 3).
+        variance_i (S, H, W); modulated and, if it ran, taa and antialiased, its history (H, W, 3).
     """
 
     guides: Guides
@@ -365,5 +365,5 @@ class Reference:
         image = stages["modulated"] = modulate(illumination, guides)
         if settings.taa:
             image, self.antialiased = taa(image, guides.motion, self.antialiased, settings)
-            stages["taa"] = image
+            stages.update(taa=image, antialiased=self.antialiased)
         return image

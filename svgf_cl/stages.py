@@ -58,6 +58,7 @@ def stage_views(passes: tuple[Pass, ...], inputs: Inputs, iterations: int) -> di
     for level in range(1, iterations + 1):
         views[f"level_{level}"] = StageView(level_buffer(level), 0, signals, 3)
         views[f"level_{level}_variance"] = StageView(level_buffer(level), 3 * signals, signals, 1)
-    if any("modulated" in p.writes for p in passes):
+    if any(p.kernel == "taa" for p in passes):
         views["modulated"] = StageView("modulated", 0, 0, 3)
+        views["antialiased"] = StageView("antialiased", 0, 0, 3)
     return views
