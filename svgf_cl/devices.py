@@ -14,6 +14,9 @@ import pyopencl as cl
 from svgf_cl import intel_runtime, probe
 from svgf_cl.errors import DeviceError
 
+# Here, as `import svgf_cl` comes by: a loader looks once, when anyone in this process first lists the platforms.
+intel_runtime.register()
+
 # A CPU is as fast as its driver's compiler. The order is that of docs/adding_a_device.md's measurements, fastest first;
 # compute units and clock say nothing here, as all drivers report the same silicon (and Intel's a clock of 0).
 CPU_PLATFORMS = (intel_runtime.PLATFORM, "Portable Computing Language")
@@ -130,7 +133,6 @@ def _context(device: cl.Device) -> cl.Context:
 
 
 def _survey(*, refresh: bool = False) -> list[DeviceReport]:
-    intel_runtime.register()
     reports = []
     platforms = _platforms()
     for index, platform in enumerate(platforms):

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 
 import pytest
 
@@ -85,3 +87,15 @@ def test_listed_too_early(system):
     intel_runtime.register()
     assert intel_runtime.why_unlisted({intel_runtime.PLATFORM}) == ""
     assert "import svgf_cl first" in intel_runtime.why_unlisted({"A"})
+
+
+def test_importing_svgf_cl_registers_it(tmp_path):
+    library = tmp_path / "user" / "lib" / intel_runtime.LIBRARY
+    library.parent.mkdir(parents=True)
+    library.touch()
+    environment = os.environ | {"PYTHONUSERBASE": str(tmp_path / "user"), "XDG_CACHE_HOME": str(tmp_path / "cache")}
+    environment.pop(intel_runtime.VARIABLE, None)
+    code = f"import os, svgf_cl; print(os.environ['{intel_runtime.VARIABLE}'])"
+    child = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
+    assert child.returncode == 0, child.stderr
+    assert child.stdout.startswith(str(tmp_path / "cache"))
