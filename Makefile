@@ -4,7 +4,7 @@ BIN := .venv/bin
 READY := .venv/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint bench clean
+.PHONY: help demo test lint bench docs clean
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z]*\):.*## /\1	/p' $(MAKEFILE_LIST) | expand -t 8
@@ -21,8 +21,11 @@ lint: $(READY)  ## check style, types and kernels (needs clang)
 	$(BIN)/mypy
 	$(BIN)/python scripts/lint_kernels.py
 
-bench: $(READY)  ## run the benchmarks
-	$(BIN)/python -m pytest benchmarks
+bench: $(READY)  ## time every pass at 1280x720, beside the error
+	$(BIN)/svgf-cl bench
+
+docs: $(READY)  ## measure again what docs/accuracy.md says
+	$(BIN)/python benchmarks/accuracy.py
 
 clean:  ## remove what the other targets made
 	rm -rf .venv build *.egg-info .*_cache

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import pyopencl as cl
 
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.reference import Reference
@@ -76,12 +77,14 @@ def measure(
     return [*timings, device, Timing.of("frame", host)]
 
 
-def error_to_oracle(settings: Settings, *, signals: int = 1, frames: int = 6) -> tuple[float, float]:
+def error_to_oracle(
+    settings: Settings, *, signals: int = 1, frames: int = 6, queue: cl.CommandQueue | None = None
+) -> tuple[float, float]:
     """Greatest and root-mean-square difference between device and oracle, relative to the picture's mean.
 
     Both denoise the same sequence from its first frame on, each with its own history.
     """
-    den, oracle = Denoiser(ERROR_SHAPE, settings=settings), Reference(ERROR_SHAPE, settings)
+    den, oracle = Denoiser(ERROR_SHAPE, settings=settings, queue=queue), Reference(ERROR_SHAPE, settings)
     worst, squares = 0.0, 0.0
     for frame in room_frames(ERROR_SHAPE, frames, signals=signals):
         expected = oracle.denoise(frame)

@@ -17,7 +17,7 @@ from svgf_cl.errors import DeviceError
 # Here, as `import svgf_cl` comes by: a loader looks once, when anyone in this process first lists the platforms.
 intel_runtime.register()
 
-# A CPU is as fast as its driver's compiler. The order is that of docs/adding_a_device.md's measurements, fastest first;
+# A CPU is as fast as its driver's compiler. The order is that of docs/extending.md, fastest first;
 # compute units and clock say nothing here, as all drivers report the same silicon (and Intel's a clock of 0).
 CPU_PLATFORMS = (intel_runtime.PLATFORM, "Portable Computing Language")
 

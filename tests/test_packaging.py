@@ -29,7 +29,7 @@ def wheel(tmp_path_factory) -> Path:
     copy = tmp_path_factory.mktemp("source")
     for name in ("svgf_cl", "kernels", "tracer"):
         shutil.copytree(ROOT / name, copy / name)
-    for name in ("setup.py", "pyproject.toml", "LICENSE"):
+    for name in ("setup.py", "pyproject.toml", "LICENSE", "README.md"):
         shutil.copy(ROOT / name, copy)
     build = [
         sys.executable,
