@@ -4,10 +4,10 @@
 metric  computed on         definition
 ======  ==================  ==========================================================================================
 PSNR    display-referred    ``-10 log10(mean((a - b)**2))`` over all pixels and channels, in dB; inf where equal
-SSIM    display-referred    mean structural similarity of the channels, Gaussian window of sigma 1.5, as in Wang et al.
-                            2004 (scikit-image's ``structural_similarity``); 1 where equal
-relMSE  linear HDR          ``mean((a - b)**2 / (b**2 + 0.01))``, `b` the reference, as in Rousselle et al. 2011; 0 where
-                            equal; one bright dot can outweigh all else
+SSIM    display-referred    mean structural similarity of the channels, Gaussian window of sigma 1.5, as in Wang et
+                            al. 2004 (scikit-image's ``structural_similarity``); 1 where equal
+relMSE  linear HDR          ``mean((a - b)**2 / (b**2 + 0.01))``, `b` the reference, as in Rousselle et al. 2011; 0
+                            where equal; one bright dot can outweigh all else
 ======  ==================  ==========================================================================================
 
 Display-referred: exposed, clipped to 0..1 and sRGB-encoded (`svgf_cl.pictures.display`). NaN in a picture makes its
@@ -52,18 +52,18 @@ def measure(picture: Linear, reference: Linear, exposure: float = 0.0) -> Metric
 
 
 def mean(metrics: Sequence[Metrics]) -> Metrics:
-    """The mean of each metric over frames; that of PSNR is the mean of its decibels."""
+    """Average each metric over frames; PSNR as the mean of its decibels."""
     return Metrics(*np.mean([astuple(m) for m in metrics], axis=0).tolist())
 
 
 def psnr(shown: Linear, wanted: Linear) -> float:
-    """Peak signal-to-noise ratio of two display-referred pictures in dB, peak 1."""
+    """Return the peak signal-to-noise ratio of two display-referred pictures in dB, peak 1."""
     error = float(np.mean(np.square(shown - wanted)))
     return float(-10 * np.log10(error)) if error else float("inf")
 
 
 def ssim(shown: Linear, wanted: Linear) -> float:
-    """Mean structural similarity of two display-referred pictures."""
+    """Return the mean structural similarity of two display-referred pictures."""
     if min(shown.shape[:2]) < SSIM_WINDOW:
         height, width, _ = shown.shape
         raise SvgfError(f"SSIM: expected pictures of at least {SSIM_WINDOW}x{SSIM_WINDOW} pixels, got {width}x{height}")
@@ -78,6 +78,6 @@ def ssim(shown: Linear, wanted: Linear) -> float:
 
 
 def relmse(picture: Linear, reference: Linear) -> float:
-    """Relative mean squared error of two linear pictures."""
+    """Return the relative mean squared error of two linear pictures."""
     tested, truth = np.asarray(picture, np.float64), np.asarray(reference, np.float64)
     return float(np.mean(np.square(tested - truth) / (np.square(truth) + 0.01)))

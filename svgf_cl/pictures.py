@@ -19,7 +19,7 @@ GAP = 4
 
 
 def display(linear: Linear, exposure: float = 0.0) -> npt.NDArray[np.float64]:
-    """The display-referred picture: exposed, clipped to 0..1, encoded with the sRGB transfer curve.
+    """Make a picture display-referred: expose it, clip it to 0..1, encode it with the sRGB transfer curve.
 
     Parameters
     ----------
@@ -35,11 +35,14 @@ def display(linear: Linear, exposure: float = 0.0) -> npt.NDArray[np.float64]:
     """
     clipped = np.clip(np.asarray(linear, np.float64) * 2.0**exposure, 0.0, 1.0)
     # IEC 61966-2-1.
-    return np.where(clipped <= 0.0031308, 12.92 * clipped, 1.055 * clipped ** (1 / 2.4) - 0.055)
+    shown: npt.NDArray[np.float64] = np.where(
+        clipped <= 0.0031308, 12.92 * clipped, 1.055 * clipped ** (1 / 2.4) - 0.055
+    )
+    return shown
 
 
 def to_bytes(linear: Linear, exposure: float = 0.0) -> Bytes:
-    """`display` in 8 bits; NaN becomes black."""
+    """Return `display` in 8 bits; NaN becomes black."""
     return np.rint(np.nan_to_num(display(linear, exposure)) * 255).astype(np.uint8)
 
 
@@ -59,7 +62,7 @@ def write_preview(path: Path, pictures: Iterable[Bytes], fps: float = 12.0) -> N
 
 
 def side_by_side(panels: Mapping[str, Bytes]) -> Bytes:
-    """Panels of one size in a row, each with its label above it."""
+    """Lay panels of one size in a row, each with its label above it."""
     height, width, _ = next(iter(panels.values())).shape
     sheet = Image.new("RGB", (len(panels) * (width + GAP) - GAP, height + LABEL_HEIGHT), "black")
     draw = ImageDraw.Draw(sheet)
@@ -72,7 +75,7 @@ def side_by_side(panels: Mapping[str, Bytes]) -> Bytes:
 
 
 def still(panels: Mapping[str, Bytes]) -> Bytes:
-    """Labelled panels, and below each a magnified piece of it: where the last two panels differ most."""
+    """Lay labelled panels in a row, and below each a magnified piece of it: where the last two differ most."""
     *_, (_, tested), (_, reference) = panels.items()
     piece = worst_piece(tested, reference)
     crops = {label: magnified(picture[piece], picture.shape) for label, picture in panels.items()}
@@ -81,7 +84,7 @@ def still(panels: Mapping[str, Bytes]) -> Bytes:
 
 
 def worst_piece(tested: Bytes, reference: Bytes, pieces: int = 4) -> tuple[slice, slice]:
-    """The one of ``pieces * pieces`` equal tiles with the greatest squared error: the honest place to look at."""
+    """Choose the tile, of ``pieces * pieces`` equal ones, with the greatest squared error: the honest place to look."""
     height, width = (max(1, n // pieces) for n in tested.shape[:2])
     rows, columns = (range(n // size) for n, size in zip(tested.shape, (height, width), strict=False))
     error = np.square(tested.astype(np.float64) - reference).sum(axis=-1)
@@ -90,5 +93,5 @@ def worst_piece(tested: Bytes, reference: Bytes, pieces: int = 4) -> tuple[slice
 
 
 def magnified(picture: Bytes, shape: tuple[int, ...]) -> Bytes:
-    """`picture` blown up to (height, width), each pixel a crisp block."""
+    """Blow `picture` up to the height and width of `shape`, each pixel a crisp block."""
     return np.asarray(Image.fromarray(picture).resize((shape[1], shape[0]), Image.Resampling.NEAREST))

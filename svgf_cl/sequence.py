@@ -26,7 +26,7 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-import OpenImageIO as oiio
+import OpenImageIO as oiio  # noqa: N813  # its documentation calls it so
 
 from svgf_cl.errors import FrameError, SequenceError
 from svgf_cl.files import written_whole
@@ -46,18 +46,18 @@ MAX_ID = 2**24
 
 
 def frame_path(folder: Path, number: int, stem: str = "frame") -> Path:
-    """The file of frame `number` in `folder`: ``frame.0007.exr``."""
+    """Name the file of frame `number` in `folder`: ``frame.0007.exr``."""
     return folder / f"{stem}.{number:04d}.exr"
 
 
 def frame_number(path: Path) -> int | None:
-    """The number in a name like ``frame.0007.exr``; None where there is none."""
+    """Return the number in a name like ``frame.0007.exr``; None where there is none."""
     match = re.search(r"\.(\d+)\.exr$", path.name)
     return int(match[1]) if match else None
 
 
 def find_numbered(folder: Path, stem: str) -> list[Path]:
-    """Every ``stem.NUMBER.exr`` in `folder`, sorted by number."""
+    """Find every ``stem.NUMBER.exr`` in `folder`, sorted by number."""
     name = re.compile(re.escape(stem) + r"\.(\d+)\.exr")
     found = [(int(match[1]), path) for path in folder.iterdir() if (match := name.fullmatch(path.name))]
     return [path for _, path in sorted(found)]
@@ -170,7 +170,7 @@ def read_picture(path: Path) -> Plane:
 
 
 def field_of(path: Path, planes: Mapping[str, Plane], field: str) -> Plane | None:
-    """`field`, put together from its channels; None where none is there, an error where only some are."""
+    """Put `field` together from its channels; None where none is there, an error where only some are."""
     names = CHANNEL_NAMES[field]
     found = [planes[name] for name in names if name in planes]
     if not found:
@@ -182,7 +182,7 @@ def field_of(path: Path, planes: Mapping[str, Plane], field: str) -> Plane | Non
 
 
 def whole_numbers(path: Path, plane: Plane) -> npt.NDArray[np.uint32]:
-    """Ids as integers; `SequenceError` unless they are whole numbers that float32 holds exactly."""
+    """Return ids as integers; `SequenceError` unless they are whole numbers that float32 holds exactly."""
     fits = (plane >= 0) & (plane <= MAX_ID) & (plane == np.floor(plane))
     if not fits.all():
         raise SequenceError(f"{path}: expected whole numbers in 0..{MAX_ID} in channel id, got {plane[~fits][0]}")
@@ -190,12 +190,12 @@ def whole_numbers(path: Path, plane: Plane) -> npt.NDArray[np.uint32]:
 
 
 def absent(path: Path, names: Sequence[str], planes: Mapping[str, Plane]) -> SequenceError:
-    """The error for channels that are not there; it lists those that are."""
+    """Make the error for channels that are not there; it lists those that are."""
     return SequenceError(f"{path}: expected channels {' '.join(names)}, found {' '.join(planes)}")
 
 
 def extent(size: tuple[int, int]) -> str:
-    """(height, width) as people write it: 640x360."""
+    """Write (height, width) as people do: 640x360."""
     height, width = size
     return f"{width}x{height}"
 

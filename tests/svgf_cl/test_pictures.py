@@ -50,7 +50,8 @@ def test_panels_stand_side_by_side_under_their_labels() -> None:
     sheet = pictures.side_by_side({"left": left, "right": right})
     np.testing.assert_array_equal(sheet[-20:, :30], left)
     np.testing.assert_array_equal(sheet[-20:, -30:], right)
-    assert sheet[:-20, :30].any() and sheet[:-20, -30:].any()
+    assert sheet[:-20, :30].any()
+    assert sheet[:-20, -30:].any()
 
 
 def test_the_still_magnifies_where_the_last_two_panels_differ_most() -> None:

@@ -1,0 +1,48 @@
+"""What all commands show alike: progress bars, tables, milliseconds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from statistics import median
+from typing import TypeVar
+
+from rich.console import Console
+from rich.progress import Progress
+from rich.table import Table
+
+Item = TypeVar("Item")
+
+
+@contextmanager
+def progress_bar(title: str, total: int) -> Iterator[Callable[[], None]]:
+    """Show progress and the time left, on stderr and only where that is a terminal; call what this yields per step."""
+    console = Console(stderr=True)
+    with Progress(console=console, disable=not (console.is_terminal and total)) as progress:
+        task = progress.add_task(title, total=total)
+        yield lambda: progress.advance(task)
+
+
+def tracked(items: Iterable[Item], total: int, title: str) -> Iterator[Item]:
+    """Pass `items` on under a progress bar."""
+    with progress_bar(title, total) as advance:
+        for item in items:
+            yield item
+            advance()
+
+
+def show(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
+    """Print a table; the first column is words, the others are numbers."""
+    table = Table(title=title, title_justify="left")
+    for index, column in enumerate(columns):
+        table.add_column(column, justify="right" if index else "left")
+    for row in rows:
+        table.add_row(*row)
+    Console().print(table)
+
+
+def show_times(profiles: Sequence[Mapping[str, float]]) -> None:
+    """Print the median time of each pass over frames, each a mapping from pass to milliseconds."""
+    times = {name: median(profile.get(name, 0.0) for profile in profiles) for name in profiles[-1]}
+    rows = [(name, f"{time:.2f}") for name, time in (times | {"total": sum(times.values())}).items()]
+    show(f"time on the device, median of {len(profiles)} frames", ("pass", "ms"), rows)

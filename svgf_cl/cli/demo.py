@@ -1,0 +1,74 @@
+"""``svgf-cl demo``: the whole way from a scene to denoised pictures, with proof."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from svgf_cl.cli.console import progress_bar, show, show_times, tracked
+from svgf_cl.cli.options import Output, Size, parse_size
+from svgf_cl.cli.scenes import require_tracer
+from svgf_cl.denoiser import Denoiser
+from svgf_cl.files import make_folder
+from svgf_cl.metrics import Metrics
+
+
+def demo(
+    output: Output = Path("out/demo"),
+    frames: Annotated[int, typer.Option(min=1, help="Number of frames.")] = 24,
+    size: Size = "640x360",
+    reference_spp: Annotated[
+        int, typer.Option(min=1, metavar="SPP", help="Samples per pixel of the references; most of the time goes here.")
+    ] = 256,
+) -> None:
+    r"""Render the built-in scene, denoise it and show what was gained.
+
+    Renders a moving camera at 1 sample per pixel, denoises each frame as it comes, renders references of a few
+    frames, and writes the sequences (EXR), stills side by side (PNG) and an animated preview (WebP).
+
+    \b
+    Examples:
+      svgf-cl demo
+      svgf-cl demo --frames 8 --size 320x180 --reference-spp 64 -o out/quick
+    """
+    require_tracer()
+    from svgf_cl.demo import Demo
+
+    run = Demo(make_folder(output), frames, parse_size(size), reference_spp)
+    denoiser = Denoiser(run.shape)
+    print(f"device: {denoiser.queue.device.name.strip()} ({denoiser.queue.device.platform.name})")
+    profiles = list(tracked(run.denoise(denoiser), frames, "rendering and denoising"))
+    with progress_bar("references", total=len(run.compared) * reference_spp) as advance:
+        run.render_references(advance)
+    run.write_stills()
+    run.write_preview()
+    show_gain(run.measure())
+    show_times(profiles)
+    show_files(
+        output, ["preview.webp", *(f"still.{n:04d}.png" for n in run.compared), "noisy", "denoised", "reference"]
+    )
+
+
+def show_gain(metrics: Mapping[int, tuple[Metrics, Metrics]]) -> None:
+    """Print how far noisy and denoised are from the reference, one row a frame."""
+    rows = [
+        (
+            str(number),
+            f"{noisy.psnr:.2f} -> {clean.psnr:.2f}",
+            f"{clean.psnr - noisy.psnr:+.2f}",
+            f"{noisy.ssim:.3f} -> {clean.ssim:.3f}",
+            f"{noisy.relmse:.4f} -> {clean.relmse:.4f}",
+        )
+        for number, (noisy, clean) in metrics.items()
+    ]
+    show("against the reference, noisy -> denoised", ("frame", "PSNR dB", "gain dB", "SSIM", "relMSE"), rows)
+
+
+def show_files(folder: Path, names: Iterable[str]) -> None:
+    """Print where the results are, the ones to look at first."""
+    print("files:")
+    for name in names:
+        print(f"  {folder / name}")

@@ -1,0 +1,72 @@
+"""``svgf-cl denoise``: EXR frames in, EXR pictures out, one frame at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import numpy.typing as npt
+import typer
+
+from svgf_cl.cli.console import show_times, tracked
+from svgf_cl.cli.options import Exposure, Output, SettingTexts, parse_settings
+from svgf_cl.denoiser import Denoiser
+from svgf_cl.errors import SequenceError
+from svgf_cl.files import make_folder
+from svgf_cl.pictures import to_bytes, write_png
+from svgf_cl.sequence import find_frames, read_sequence, write_picture
+from svgf_cl.settings import Settings
+
+
+def denoise(
+    frames: Annotated[list[Path], typer.Argument(help="EXR files in order, or folders of frame.0000.exr and so on.")],
+    output: Output,
+    set_: SettingTexts = [],  # noqa: B006  # never changed; typer wants the default spelled here
+    png: Annotated[bool, typer.Option("--png", help="Also write every picture tone-mapped as PNG.")] = False,
+    exposure: Exposure = 0.0,
+) -> None:
+    r"""Denoise a sequence of EXR frames.
+
+    Writes one EXR (R, G, B; linear HDR) a frame under the frame's own name. The channels read are those that
+    `svgf-cl render` writes: R G B, normal.X Y Z, depth.Z, motion.X Y [Z], and where there are any albedo.R G B, id,
+    emission.R G B, direct.R G B, indirect.R G B. All frames count as one shot: each uses the ones before it.
+
+    \b
+    Examples:
+      svgf-cl denoise out/box -o out/box-denoised
+      svgf-cl denoise out/box -o out/box-denoised --set iterations=4 --set alpha_color=0.1 --png
+    """
+    settings = parse_settings(set_)
+    sources = find_frames(frames)
+    targets = target_paths(sources, make_folder(output))
+    profiles = []
+    for target, picture, profile in tracked(denoised(sources, targets, settings), len(sources), "denoising"):
+        write_picture(target, picture)
+        if png:
+            write_png(target.with_suffix(".png"), to_bytes(picture, exposure))
+        profiles.append(profile)
+    show_times(profiles)
+    print(f"{len(profiles)} frames in {output}")
+
+
+def target_paths(sources: Sequence[Path], folder: Path) -> list[Path]:
+    """Name the picture of each source; `SequenceError` where two would be one file, or one would replace a source."""
+    targets = [folder / source.with_suffix(".exr").name for source in sources]
+    for target, source in zip(targets, sources, strict=True):
+        if target.resolve() in {path.resolve() for path in sources}:
+            raise SequenceError(f"{target}: expected an output folder other than the input's, got {source.parent}")
+    if len(set(targets)) < len(targets):
+        raise SequenceError(f"{folder}: expected frames of different names, got two that are both called the same")
+    return targets
+
+
+def denoised(
+    sources: Sequence[Path], targets: Sequence[Path], settings: Settings
+) -> Iterator[tuple[Path, npt.NDArray[np.float32], dict[str, float]]]:
+    """Read and denoise one frame after the other: where each goes, its picture, and milliseconds per pass."""
+    denoiser = None
+    for target, frame in zip(targets, read_sequence(sources), strict=True):
+        denoiser = denoiser or Denoiser(frame.shape, settings=settings)
+        yield target, denoiser.denoise(frame), denoiser.profile()

@@ -1,0 +1,70 @@
+"""Texts from the command line turned into values; each error says what was expected and what came."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from svgf_cl.errors import SettingsError, SvgfError
+from svgf_cl.settings import RANGES, Settings
+
+DEFAULTS: dict[str, bool | int | float] = vars(Settings())
+SWITCHES = {"true": True, "on": True, "1": True, "false": False, "off": False, "0": False}
+
+Output = Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Folder to write to; made if missing.")]
+Exposure = Annotated[float, typer.Option(metavar="STOPS", help="Brighten what is shown or measured as shown.")]
+Size = Annotated[str, typer.Option(metavar="WxH", help="Width and height in pixels.")]
+
+
+def parse_size(text: str) -> tuple[int, int]:
+    """Read ``640x360`` as (height, width)."""
+    match = re.fullmatch(r"([1-9]\d*)x([1-9]\d*)", text)
+    if not match:
+        raise SvgfError(f"--size: expected WIDTHxHEIGHT in pixels such as 640x360, got {text!r}")
+    return int(match[2]), int(match[1])
+
+
+def parse_rgb(text: str) -> tuple[float, float, float]:
+    """Read ``0.4,0.5,0.7`` as three radiances >= 0."""
+    try:
+        red, green, blue = (float(part) for part in text.split(","))
+    except ValueError as error:
+        raise SvgfError(f"--sky: expected three numbers such as 0.4,0.5,0.7, got {text!r}") from error
+    if not all(0 <= value < float("inf") for value in (red, green, blue)):
+        raise SvgfError(f"--sky: expected finite radiance >= 0, got {text!r}")
+    return red, green, blue
+
+
+def parse_settings(texts: Iterable[str]) -> Settings:
+    """Read ``["iterations=4", "taa=on"]`` as `Settings`; `SettingsError` for an unknown name or a wrong value."""
+    values: dict[str, bool | int | float] = {}
+    for text in texts:
+        name, _, value = text.partition("=")
+        if name not in DEFAULTS:
+            raise SettingsError(f"--set: expected NAME=VALUE with a name out of {', '.join(DEFAULTS)}, got {text!r}")
+        try:
+            values[name] = SWITCHES[value.lower()] if name not in RANGES else type(DEFAULTS[name])(value)
+        except (KeyError, ValueError) as error:
+            raise SettingsError(f"--set {name}: expected {describe(name)}, got {value!r}") from error
+    return Settings(**values)  # type: ignore[arg-type]  # each value was made by its own field's type
+
+
+def describe(name: str) -> str:
+    """Describe the values that setting `name` may have: ``"a whole number in 1..5"``."""
+    if name not in RANGES:
+        return "on or off"
+    low, high = RANGES[name]
+    return f"a {'whole ' if isinstance(DEFAULTS[name], int) else ''}number in {low:g}..{high:g}"
+
+
+def settings_help() -> str:
+    """Describe every setting with its range and default, for the help text."""
+    parts = (f"{name}: {describe(name)} [{default}]" for name, default in DEFAULTS.items())
+    return "Change a setting of the filter; may be repeated. " + "; ".join(parts) + "."
+
+
+SettingTexts = Annotated[list[str], typer.Option("--set", metavar="NAME=VALUE", help=settings_help())]

@@ -1,0 +1,79 @@
+"""``svgf-cl render``: a scene file in, noisy EXR frames with their G-buffers out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from svgf_cl.cli.console import progress_bar, tracked
+from svgf_cl.cli.options import Output, Size, parse_rgb, parse_size
+from svgf_cl.cli.scenes import open_scene, require_tracer
+from svgf_cl.errors import SequenceError
+from svgf_cl.files import make_folder
+from svgf_cl.sequence import find_numbered, frame_path, write_frame, write_picture
+
+CAMERA_HELP = (
+    "Position, point looked at, vertical field of view in degrees and, if it is not +Y, the direction that is up: "
+    "px,py,pz/lx,ly,lz/fov[/ux,uy,uz]. Given several times, the camera moves from one to the next. "
+    "By default the scene's own."
+)
+SKY_HELP = "Light from everywhere outside the scene: linear radiance, for example 0.4,0.5,0.7."
+
+
+def render(
+    scene: Annotated[str, typer.Argument(help="A glTF, GLB or OBJ file, or the name of a built-in scene: cornell.")],
+    output: Output,
+    frames: Annotated[int, typer.Option(min=1, help="Number of frames.")] = 24,
+    spp: Annotated[int, typer.Option(min=1, help="Samples per pixel of a frame.")] = 1,
+    size: Size = "640x360",
+    camera: Annotated[list[str], typer.Option(metavar="TEXT", help=CAMERA_HELP)] = [],  # noqa: B006
+    sky: Annotated[str | None, typer.Option(metavar="R,G,B", help=SKY_HELP)] = None,
+    jitter: Annotated[bool, typer.Option(help="Move the rays within the pixel, by a new offset each frame.")] = True,
+    seed: Annotated[int, typer.Option(min=0, help="Another seed gives other noise.")] = 0,
+    bounces: Annotated[int, typer.Option(min=0, help="Surfaces a path visits after the first.")] = 1,
+    reference_spp: Annotated[
+        int, typer.Option(min=0, metavar="SPP", help="Also write a reference of each frame; 0: none.")
+    ] = 0,
+) -> None:
+    r"""Render a sequence with the built-in path tracer.
+
+    Writes frame.0000.exr and so on: noisy radiance and all that the denoiser wants to know, as named channels; with
+    --reference-spp also reference.0000.exr and so on.
+
+    \b
+    Examples:
+      svgf-cl render cornell -o out/box
+      svgf-cl render sponza.glb --camera 8,3,0/0,3,0/60 --camera 6,2,1/0,3,0/60 --sky 0.8,0.9,1 -o out/sponza
+      svgf-cl render cornell --frames 4 --size 320x180 --reference-spp 256 -o out/box
+    """
+    require_tracer()
+    from tracer import Camera, CameraPath, render_reference, render_sequence
+
+    shape, light = parse_size(size), parse_rgb(sky) if sky else None
+    cameras = [Camera.parse(text) for text in camera]
+    world = open_scene(scene, light)
+    path = CameraPath.through(cameras) if cameras else world.camera_path
+    folder = make_folder(output)
+    check_leftovers(folder, frames, with_references=reference_spp > 0)
+    noisy = render_sequence(world, path, shape, frames, spp, jitter, seed, bounces)
+    for number, frame in enumerate(tracked(noisy, frames, "rendering")):
+        write_frame(frame_path(folder, number), frame)
+    with progress_bar("references", total=frames * reference_spp) as advance:
+        for number in range(frames if reference_spp else 0):
+            view = path.at(number / max(frames - 1, 1))
+            picture = render_reference(
+                world, view, shape, spp=reference_spp, seed=seed, bounces=bounces, progress=lambda *_: advance()
+            )
+            write_picture(frame_path(folder, number, "reference"), picture)
+    print(f"{frames} frames in {output}")
+
+
+def check_leftovers(folder: Path, frames: int, *, with_references: bool) -> None:
+    """Raise `SequenceError` where frames of an earlier run would stay behind and pass for a part of this one."""
+    written = {frame_path(folder, number) for number in range(frames)}
+    written |= {frame_path(folder, number, "reference") for number in range(frames if with_references else 0)}
+    for path in find_numbered(folder, "frame") + find_numbered(folder, "reference"):
+        if path not in written:
+            raise SequenceError(f"{path}: left by an earlier run of more frames; delete it, or choose another folder")

@@ -1,0 +1,114 @@
+"""The demo: the built-in scene rendered at 1 sample per pixel, denoised as it comes, and held against references.
+
+Every step leaves its result in files and the next one reads them there::
+
+    noisy/frame.0000.exr ...        what the tracer rendered, with its G-buffer
+    denoised/frame.0000.exr ...
+    reference/reference.0000.exr    of the compared frames only: they cost the most
+    still.0000.png                  the compared frames side by side, with the piece that differs most
+    preview.webp                    noisy and denoised, animated
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+import tracer
+from svgf_cl.denoiser import Denoiser
+from svgf_cl.files import make_folder
+from svgf_cl.frame import Shape
+from svgf_cl.metrics import Metrics, measure
+from svgf_cl.pictures import Bytes, still, to_bytes, write_png, write_preview
+from svgf_cl.sequence import frame_path, read_picture, write_frame, write_picture
+
+# From here on the history is long enough for the filter to be judged by.
+WARM = 8
+
+
+@dataclass(frozen=True)
+class Demo:
+    """One run of the demo; call the steps from top to bottom.
+
+    Parameters
+    ----------
+    folder : Path
+        Where everything goes.
+    frames : int
+        Length of the sequence, >= 1.
+    shape : (int, int)
+        (height, width) in pixels.
+    reference_spp : int
+        Samples per pixel of a reference, >= 1.
+    """
+
+    folder: Path
+    frames: int
+    shape: Shape
+    reference_spp: int
+
+    @cached_property
+    def scene(self) -> tracer.Scene:
+        """The built-in scene."""
+        return tracer.builtin_scene()
+
+    @property
+    def compared(self) -> list[int]:
+        """Frames that are held against a reference: the first, one at the end of the warm-up, and two after it."""
+        last = self.frames - 1
+        warm = min(WARM, last)
+        return sorted({0, warm, (warm + last) // 2, last})
+
+    def path(self, kind: str, number: int) -> Path:
+        """Name the file of a ``noisy``, ``denoised`` or ``reference`` frame."""
+        return frame_path(self.folder / kind, number, "reference" if kind == "reference" else "frame")
+
+    def denoise(self, denoiser: Denoiser) -> Iterator[dict[str, float]]:
+        """Render, denoise and write one frame after the other; yield the milliseconds of each pass."""
+        for kind in ("noisy", "denoised"):
+            make_folder(self.folder / kind)
+        noisy = tracer.render_sequence(self.scene, self.scene.camera_path, self.shape, self.frames)
+        for number, frame in enumerate(noisy):
+            write_frame(self.path("noisy", number), frame)
+            write_picture(self.path("denoised", number), denoiser.denoise(frame))
+            yield denoiser.profile()
+
+    def render_references(self, advance: Callable[[], None]) -> None:
+        """Render the references of the compared frames; `advance` is called after each sample per pixel."""
+        make_folder(self.folder / "reference")
+        for number in self.compared:
+            camera = self.scene.camera_path.at(number / max(self.frames - 1, 1))
+            picture = tracer.render_reference(
+                self.scene, camera, self.shape, spp=self.reference_spp, progress=lambda *_: advance()
+            )
+            write_picture(self.path("reference", number), picture)
+
+    def measure(self) -> dict[int, tuple[Metrics, Metrics]]:
+        """Measure noisy and denoised against the reference, by frame."""
+        return {number: self._measure(number) for number in self.compared}
+
+    def _measure(self, number: int) -> tuple[Metrics, Metrics]:
+        noisy, denoised, reference = (read_picture(self.path(k, number)) for k in ("noisy", "denoised", "reference"))
+        return measure(noisy, reference), measure(denoised, reference)
+
+    def write_stills(self) -> None:
+        """Write the compared frames side by side as PNG."""
+        for number in self.compared:
+            labels = {
+                "noisy": "noisy, 1 spp",
+                "denoised": "denoised",
+                "reference": f"reference, {self.reference_spp} spp",
+            }
+            panels = {label: to_bytes(read_picture(self.path(kind, number))) for kind, label in labels.items()}
+            write_png(self.folder / f"still.{number:04d}.png", still(panels))
+
+    def write_preview(self) -> None:
+        """Write the whole sequence as an animation, noisy beside denoised."""
+        write_preview(self.folder / "preview.webp", (self._pair(number) for number in range(self.frames)))
+
+    def _pair(self, number: int) -> Bytes:
+        return np.hstack([to_bytes(read_picture(self.path(kind, number))) for kind in ("noisy", "denoised")])
