@@ -1,0 +1,55 @@
+"""The demo, small: every file it promises is there and fits, and denoised is better than noisy."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from svgf_cl import Denoiser
+from svgf_cl.demo import Demo
+from svgf_cl.pictures import GAP, LABEL_HEIGHT
+
+WIDTH, HEIGHT = 64, 36
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Demo:
+    demo = Demo(tmp_path_factory.mktemp("demo"), frames=4, shape=(HEIGHT, WIDTH), reference_spp=32)
+    assert len(list(demo.denoise(Denoiser(demo.shape)))) == 4
+    demo.render_references(lambda: None)
+    demo.write_stills()
+    demo.write_preview()
+    return demo
+
+
+@pytest.mark.parametrize(
+    ("frames", "compared"), [(1, [0]), (2, [0, 1]), (9, [0, 8]), (10, [0, 8, 9]), (24, [0, 8, 15, 23])]
+)
+def test_the_first_frame_and_some_after_the_warm_up_are_compared(frames: int, compared: list[int]) -> None:
+    assert Demo(Path(), frames, (1, 1), 1).compared == compared
+
+
+def test_denoised_is_better_than_noisy_from_the_first_frame_on(run: Demo) -> None:
+    metrics = run.measure()
+    assert list(metrics) == [0, 3]
+    for noisy, denoised in metrics.values():
+        assert denoised.psnr > noisy.psnr + 3
+        assert denoised.ssim > noisy.ssim
+
+
+def test_only_compared_frames_have_a_reference(run: Demo) -> None:
+    names = [f"frame.{number:04d}.exr" for number in range(4)]
+    assert sorted(path.name for path in (run.folder / "noisy").iterdir()) == names
+    assert sorted(path.name for path in (run.folder / "denoised").iterdir()) == names
+    references = sorted(path.name for path in (run.folder / "reference").iterdir())
+    assert references == ["reference.0000.exr", "reference.0003.exr"]
+
+
+def test_pictures_show_all_panels(run: Demo) -> None:
+    with Image.open(run.folder / "still.0003.png") as still:
+        assert still.size == (3 * WIDTH + 2 * GAP, 2 * HEIGHT + LABEL_HEIGHT + GAP)
+    with Image.open(run.folder / "preview.webp") as preview:
+        assert preview.size == (2 * WIDTH, HEIGHT)
+        assert preview.n_frames == 4
