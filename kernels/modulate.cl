@@ -1,6 +1,6 @@
 // First and last stage: the user's interleaved (H, W, C) arrays in and out of the planar layout.
 //
-//   demodulate   c = min(max((color - emission) / albedo', 0), 1e15),  albedo' = max(albedo, 0.01)
+//   demodulate   c = min(max((color - emission) / albedo', 0), 1e15),  albedo' = max(albedo, 0.001)
 //   modulate     out = sum over signals c * albedo' + emission
 //
 // in   color, or direct and indirect; albedo, emission, id where the frame has them; normal, depth
@@ -8,7 +8,7 @@
 // Texture never goes through the filter (Schied et al. 2017, section 3). The floor on albedo keeps specular light on
 // black surfaces: modulate multiplies by the number that demodulate divided by.
 
-#define MIN_ALBEDO 0.01f
+#define MIN_ALBEDO 0.001f
 #define MAX_ILLUMINATION 1e15f  // its square can still be summed in float32
 
 inline floatv known_albedo(__global const float *albedo, intv i) {

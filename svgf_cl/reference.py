@@ -32,7 +32,7 @@ from svgf_cl.reference_taps import (
 from svgf_cl.settings import Settings
 
 FLOAT32_MAX = float(np.finfo(np.float32).max)
-ALBEDO_FLOOR = 0.01
+ALBEDO_FLOOR = 0.001
 ILLUMINATION_MAX = 1e15
 MOTION_MAX = 1e6
 NO_HISTORY = (-MOTION_MAX, -MOTION_MAX, 0.0)
@@ -52,7 +52,7 @@ class Guides:
     depth : (H, W), > 0; 0 at a miss.
     motion : (H, W, 3), previous minus current x, y and depth.
     id : (H, W) integers, or None where the frame has none.
-    albedo : (H, W, 3), at least 0.01.
+    albedo : (H, W, 3), at least 0.001.
     emission : (H, W, 3), not negative.
     """
 
