@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pyopencl as cl
+from numpy.typing import NDArray
 
 from svgf_cl import reference
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.frame import Frame
 from svgf_cl.settings import Settings
 
-Array = np.ndarray
+Single = NDArray[np.float32]
+Array = NDArray[np.float64]
 
 # An error counts against the value plus this share of the stage's mean: a relative error where there is something to be
 # relative to, an absolute one near zero.
@@ -65,7 +67,7 @@ def deviations(
     settings = settings or Settings()
     errors: dict[str, list[Array]] = {}
     den: Denoiser | None = None
-    past: dict[str, Array] = {}
+    past: dict[str, Single] = {}
     guides: reference.Guides | None = None
     for frame in frames:
         den = den or Denoiser(frame.shape, settings=settings, queue=queue, keep_stages=True)
@@ -84,7 +86,7 @@ class History:
     """Guides and stages of the previous frame, as the device has them."""
 
     guides: reference.Guides
-    stages: dict[str, Array]
+    stages: dict[str, Single]
 
     def accumulated(self) -> reference.History:
         """What `temporal` reads."""
@@ -92,14 +94,14 @@ class History:
         return reference.History(self.guides, accumulated(stages, illumination=stages["level_1"]))
 
 
-def seen_guides(frame: Frame, now: dict[str, Array]) -> reference.Guides:
+def seen_guides(frame: Frame, now: dict[str, Single]) -> reference.Guides:
     """The oracle's guides with normal and depth as the device rounded them."""
     _, guides = reference.demodulate(frame)
-    return reference.replace(guides, normal=wide(now["normal"]), depth=wide(now["depth"]))
+    return replace(guides, normal=wide(now["normal"]), depth=wide(now["depth"]))
 
 
 def oracle_stages(
-    frame: Frame, guides: reference.Guides, now: dict[str, Array], previous: History | None, settings: Settings
+    frame: Frame, guides: reference.Guides, now: dict[str, Single], previous: History | None, settings: Settings
 ) -> Iterator[tuple[str, Array]]:
     """What the oracle makes of each kernel's actual input, stage by stage."""
     illumination, exact = reference.demodulate(frame)
@@ -133,23 +135,24 @@ def oracle_stages(
     yield "out", resolved
 
 
-def accumulated(stages: dict[str, Array], illumination: Array) -> reference.Accumulated:
+def accumulated(stages: dict[str, Single], illumination: Single) -> reference.Accumulated:
     """The device's accumulated quantities, as the oracle takes them."""
     return reference.Accumulated(
         wide(illumination), wide(stages["mean"]), wide(stages["moment_variance"]), wide(stages["history_length"])
     )
 
 
-def wide(values: Array) -> Array:
+def wide(values: Single) -> Array:
     """float32 to float64."""
     return values.astype(np.float64)
 
 
-def relative_error(got: Array, expected: Array) -> Array:
+def relative_error(got: Single, expected: Array) -> Array:
     """|got - expected| / (|expected| + `SCALE_SHARE` of the mean |expected|), of the same shape."""
     size = np.abs(expected)
     scale = SCALE_SHARE * size.mean() or 1.0
-    return np.abs(got - expected) / (size + scale)
+    error: Array = np.abs(got - expected) / (size + scale)
+    return error
 
 
 def summary(stage: str, errors: Array) -> Deviation:

@@ -104,7 +104,8 @@ class Uploads:
         if value.offset or not value.flags.c_contiguous:
             raise FrameError(name, "a C-contiguous Array with offset 0 (use .copy())", "a view")
         if value.context != self._queue.context:
-            raise FrameError(name, "an Array on the denoiser's context (use Denoiser(queue=array.queue))", "another context")
+            raise FrameError(name, "an Array in the context of Denoiser(queue=...)", "one of another context")
+        assert isinstance(value.base_data, cl.Buffer)
         return value.base_data
 
 

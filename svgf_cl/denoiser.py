@@ -32,6 +32,16 @@ class Launch:
     constants: tuple[Any, ...]
 
 
+@dataclass(frozen=True)
+class Plan:
+    """The pass table made ready for frames with one set of fields, and the history of the sequence so far."""
+
+    inputs: Inputs
+    launches: tuple[Launch, ...]
+    planes: Buffers
+    views: dict[str, StageView]
+
+
 class Denoiser:
     """Denoises a sequence of frames of one size, one call a frame.
 
@@ -72,7 +82,8 @@ class Denoiser:
         self._vector_width = devices.vector_width(self.queue.device)
         self._keep_stages = keep_stages
         self._uploads = Uploads(self.queue)
-        self.reset()
+        self._plan: Plan | None = None
+        self._events: list[tuple[str, cl.Event]] = []
 
     def denoise(self, frame: Frame, *, out: Any = None, wait_for: Sequence[cl.Event] = ()) -> Any:
         """Filter the next frame of the sequence.
@@ -98,25 +109,24 @@ class Denoiser:
             If a field is missing, of another shape or type, or on another context.
         """
         frame.check(self.shape)
-        self._prepare(Inputs.of(frame))
+        plan = self._ready(Inputs.of(frame))
         result = self._result(frame) if out is None else out
         check_out(result, (*self.shape, 3))
         on_host = isinstance(result, np.ndarray)
-        buffers = {name: self._uploads.buffer(name, getattr(frame, name)) for name in self._inputs.fields}
+        buffers = {name: self._uploads.buffer(name, getattr(frame, name)) for name in plan.inputs.fields}
         buffers[OUT] = self._uploads.keep(OUT, result.nbytes) if on_host else self._uploads.device_buffer(OUT, result)
         if wait_for:
             cl.enqueue_barrier(self.queue, wait_for=list(wait_for))
-        self._planes.begin_frame()
-        self._events = [(launch.step.name, self._run(launch, buffers)) for launch in self._launches]
+        plan.planes.begin_frame()
+        self._events = [(launch.step.name, self._run(launch, plan.planes, buffers)) for launch in plan.launches]
         if on_host:
             cl.enqueue_copy(self.queue, result, buffers[OUT])
         return result
 
     def reset(self) -> None:
         """Forget the past: call it at a camera cut, or to send frames with other fields."""
-        self._launches: list[Launch] = []
-        self._views: dict[str, StageView] = {}
-        self._events: list[tuple[str, cl.Event]] = []
+        self._plan = None
+        self._events = []
 
     def profile(self) -> dict[str, float]:
         """Milliseconds on the device of each pass of the last frame, in order, from OpenCL events."""
@@ -128,7 +138,7 @@ class Denoiser:
     @property
     def stages(self) -> list[str]:
         """Names that `stage` understands; empty before the first frame."""
-        return list(self._views)
+        return list(self._plan.views) if self._plan else []
 
     def stage(self, name: str) -> np.ndarray:
         """An intermediate result of the last frame, for debugging.
@@ -147,29 +157,28 @@ class Denoiser:
         SvgfError
             If there is no such stage, or its memory went to a later stage of the frame.
         """
-        if name not in self._views:
-            raise SvgfError(f"stage: expected one of {', '.join(self._views) or 'none before a frame'}; got {name!r}")
-        view = self._views[name]
-        if not self._planes.survives(view.buffer):
+        if self._plan is None or name not in self._plan.views:
+            raise SvgfError(f"stage: expected one of {', '.join(self.stages) or 'none before a frame'}; got {name!r}")
+        view = self._plan.views[name]
+        if not self._plan.planes.survives(view.buffer):
             raise SvgfError(f"stage: {name!r} was overwritten by a later pass; use Denoiser(..., keep_stages=True)")
-        return view.of(self._layout.crop(self._planes.read(view.buffer)))
+        return view.of(self._layout.crop(self._plan.planes.read(view.buffer)))
 
     @property
     def nbytes(self) -> int:
         """Device memory held for planes, in bytes; 0 before the first frame."""
-        return self._planes.nbytes if self._launches else 0
+        return self._plan.planes.nbytes if self._plan else 0
 
-    def _prepare(self, inputs: Inputs) -> None:
-        """Build kernels and clear the history on the first frame; afterwards only see that the fields stay the same."""
-        if self._launches:
-            if inputs != self._inputs:
-                raise FrameError("fields", f"{self._inputs} as before (or a call of reset)", str(inputs))
-            return
-        passes = pipeline(inputs, self.settings)
-        launches = [self._launch(step, inputs) for step in passes]
-        self._planes = Buffers(self.queue, self._layout, passes, inputs, share=not self._keep_stages)
-        self._views = stage_views(passes, inputs, self.settings.iterations)
-        self._inputs, self._launches = inputs, launches
+    def _ready(self, inputs: Inputs) -> Plan:
+        """The plan for these inputs, made on the first frame: kernels built, history blank."""
+        if self._plan is None:
+            passes = pipeline(inputs, self.settings)
+            launches = tuple(self._launch(step, inputs) for step in passes)
+            planes = Buffers(self.queue, self._layout, passes, inputs, share=not self._keep_stages)
+            self._plan = Plan(inputs, launches, planes, stage_views(passes, inputs, self.settings.iterations))
+        if inputs != self._plan.inputs:
+            raise FrameError("fields", f"{self._plan.inputs} as before (or a call of reset)", str(inputs))
+        return self._plan
 
     def _launch(self, step: Pass, inputs: Inputs) -> Launch:
         defines = {"VW": self._vector_width, **inputs.defines, **self.settings.defines}
@@ -178,9 +187,9 @@ class Denoiser:
         scalars += [np.float32(getattr(self.settings, name)) for name in step.settings]
         return Launch(step, cl.Kernel(program, step.kernel), (self._layout.size, *scalars))
 
-    def _run(self, launch: Launch, user: dict[str, cl.Buffer]) -> cl.Event:
+    def _run(self, launch: Launch, planes: Buffers, user: dict[str, cl.Buffer]) -> cl.Event:
         names = (*launch.step.reads, *launch.step.writes)
-        arguments = [user[name] if name in user else self._planes[name] for name in names]
+        arguments = [user[name] if name in user else planes[name] for name in names]
         vectors = -(-self._layout.width // self._vector_width)
         global_size = (-(-vectors // WORK_GROUP) * WORK_GROUP, self._layout.height)
         return launch.kernel(self.queue, global_size, (WORK_GROUP, 1), *launch.constants, *arguments)

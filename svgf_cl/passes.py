@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from svgf_cl.frame import Frame
 from svgf_cl.settings import Settings
 
-# Buffers that live from frame to frame. A pair is written anew every frame and read back, as "previous ...", in the next.
+# Buffers that live from frame to frame. A pair is written anew every frame and read in the next as "previous ...".
 PAIRS = ("guide", "moments", "antialiased")
 HISTORY = ("history",)
 # Where the user's result goes.

@@ -1,4 +1,4 @@
-"""The device's layout of an image: a stack of planes with a halo (kernels/common.clh has the same picture from inside)."""
+"""The device's layout of an image: a stack of planes with a halo; kernels/common.clh shows the same from inside."""
 
 from __future__ import annotations
 

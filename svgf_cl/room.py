@@ -6,15 +6,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from svgf_cl.frame import Frame, Shape
 
-Array = np.ndarray
+Array = NDArray[np.float64]
 
 HALF_SIZE = np.array([4.0, 2.0, 6.0])  # the room reaches from -HALF_SIZE to HALF_SIZE
 TILES_PER_UNIT = 2.0
 FOCAL_LENGTH = 0.9  # in image heights
-PERIOD = 8  # frames in which the camera, looking along -z, goes once round a small loop; frames may be sent over and over
+# The camera looks along -z and goes round a small loop in so many frames: they may be sent over and over.
+PERIOD = 8
 LOOP = np.array([0.03, 0.01, 0.05])
 
 
@@ -38,12 +40,14 @@ def room_frames(shape: Shape, count: int, *, signals: int = 1, seed: int = 0) ->
     for index in range(count):
         view = View.of(shape, eye(index))
         past = view.points - eye(index - 1)
-        motion = np.concatenate([project(past, shape) - pixels(shape), (-past[..., 2] - view.depth)[..., None]], axis=-1)
+        deeper = -past[..., 2:] - view.depth[..., None]
+        motion = np.concatenate([project(past, shape) - pixels(shape), deeper], axis=-1)
         rng = np.random.default_rng((seed, index))
         lights = [0.5 * view.albedo * rng.exponential(1.0, (*shape, 1)) for _ in range(signals)]
         split = {} if signals == 1 else {"direct": lights[0], "indirect": lights[1]}
-        fields = {"color": sum(lights), "albedo": view.albedo, "normal": view.normal, "depth": view.depth, **split}
-        single = {name: np.ascontiguousarray(value, np.float32) for name, value in (fields | {"motion": motion}).items()}
+        surface = {"albedo": view.albedo, "normal": view.normal, "depth": view.depth, "motion": motion}
+        fields = {"color": sum(lights), **split, **surface}
+        single = {name: np.ascontiguousarray(value, np.float32) for name, value in fields.items()}
         yield Frame(**single, id=view.wall.astype(np.uint32))
 
 
@@ -99,5 +103,8 @@ def rays(shape: Shape) -> Array:
 def project(points: Array, shape: Shape) -> Array:
     """(H, W, 2) pixel where a point relative to the eye, (H, W, 3), is seen."""
     height, width = shape
-    scaled = points[..., :2] * (1, -1) / -points[..., 2:] * FOCAL_LENGTH * height
-    return scaled + ((width - 1) / 2, (height - 1) / 2)
+    seen: Array = points[..., :2] * (1, -1) / -points[..., 2:] * FOCAL_LENGTH * height + (
+        (width - 1) / 2,
+        (height - 1) / 2,
+    )
+    return seen

@@ -29,26 +29,30 @@ class Settings:
     Parameters
     ----------
     iterations : int, levels, 1..5
-        A-trous levels; each doubles the filter's reach. 5 as in the paper (section 4.3): 61 pixels wide... wide enough for 1 spp.
+        A-trous levels; each doubles the filter's reach. 5 as in the paper: taps up to 62 pixels away, enough for 1 spp.
     sigma_depth : float, 1e-3..1e3
         Tolerated depth difference in units of the surface's own slope. 1 as in the paper (section 4.4).
     sigma_normal : int, power of two, 1..1024
         Exponent of the normals' cosine. 128 as in the paper; a power of two because the kernel squares repeatedly.
     sigma_luminance : float, standard deviations, 1e-3..1e3
-        Tolerated luminance difference. 4 as in the paper.
+        Tolerated luminance difference, in units of its estimated noise. 4 as in the paper (section 4.4).
     depth_slope_floor : float, depth per depth and pixel, 1e-6..1
-        Least slope that still counts as one surface; keeps walls that face the camera from being cut by rounding.
+        Least slope that still counts as one surface. 1e-3 bridges rounding and the faint relief of a wall that faces
+        the camera, and is far below the step to anything behind it.
     alpha_color, alpha_moments : float, 0..1
-        Least share of the new frame in the accumulated colour and luminance moments. 0.2 as in the paper (section 4.1);
-        0 averages for ever, for a static view under constant light.
+        Least share of the new frame in the accumulated colour and luminance moments. 0.2 as in the paper (section 4.1).
+        Less is steadier and lags more. Colour is fed back filtered, so that detail in the light itself (not in the
+        albedo) softens with every frame it is kept: 0 is no way to converge on a still picture.
     depth_threshold : float, relative to depth, 0..1
-        Reprojection: how far a tap may lie off the expected depth, beside one pixel of the surface's slope.
+        Reprojection: how far a tap may lie off the expected depth, beside one pixel of the surface's slope. 0.02
+        forgives curvature between the frames' sample positions and still tells objects a hand apart across a room.
     normal_threshold : float, cosine, -1..1
-        Reprojection: least cosine between the normals of pixel and tap.
+        Reprojection: least cosine between the normals of pixel and tap. 0.9, 26 degrees, as much as a small ball's
+        surface turns within a pixel or two.
     taa : bool
         Temporal antialiasing after the filter; off, because a renderer often has its own.
     alpha_taa : float, 0..1
-        Share of the new frame in the antialiased picture.
+        Share of the new frame in the antialiased picture. 0.1: about ten jittered samples make an edge.
     """
 
     iterations: int = 5

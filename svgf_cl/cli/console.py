@@ -32,8 +32,9 @@ def tracked(items: Iterable[Item], total: int, title: str) -> Iterator[Item]:
 
 
 def show(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
-    """Print a table; the first column is words, the others are numbers."""
-    table = Table(title=title, title_justify="left")
+    """Print a table under its title; the first column is words, the others are numbers."""
+    print(title)  # not the table's own, which would be wrapped to its width
+    table = Table()
     for index, column in enumerate(columns):
         table.add_column(column, justify="right" if index else "left")
     for row in rows:
