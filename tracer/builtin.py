@@ -100,9 +100,30 @@ def _lattice(material: Material) -> Instance:
 
 
 def _tiles() -> Image:
-    """A floor of 14 by 19 tiles in two tones with light joints, each tile a little different."""
-    return np.zeros((4, 4, 3), np.uint8) + 128
+    """A floor of 14 by 19 tiles in two tones, each a little different, with pale joints."""
+    columns, rows, size, joint = 14, 19, 32, 1
+    random = np.random.default_rng(7)
+    y, x = np.mgrid[: rows * size, : columns * size]
+    dark = ((x // size + y // size) % 2)[..., None]
+    colour = np.where(dark, (96.0, 84.0, 78.0), (214.0, 204.0, 186.0))
+    colour *= random.uniform(0.9, 1.06, (rows, columns, 1))[y // size, x // size]
+    colour += random.normal(0.0, 4.0, (*x.shape, 1))
+    joints = (np.minimum(x % size, y % size) < joint)[..., None]
+    return np.where(joints, (170.0, 164.0, 152.0), colour).clip(0, 255).astype(np.uint8)
 
 
 def _painting() -> Image:
-    return np.zeros((4, 4, 3), np.uint8) + 128
+    """A picture for the back wall: a low sun, with rings, over waves, in a dark frame."""
+    height, width = 256, 416
+    y, x = np.mgrid[1.0 : 0.0 : height * 1j, 0.0 : width / height : width * 1j]
+    sky = np.stack([0.95 - 0.35 * y, 0.62 - 0.30 * y, 0.35 + 0.25 * y], axis=-1)
+    distance = np.hypot(x - 1.05, y - 0.42)
+    rings = 0.10 * (np.floor(distance * 14.0) % 2) * (distance < 0.85)
+    sky += rings[..., None]
+    sky[distance < 0.2] = (1.0, 0.90, 0.62)
+    for level in range(5):
+        crest = 0.44 - 0.08 * level + 0.025 * np.sin(x * (9.0 - level) + 1.7 * level)
+        sky[y < crest] = np.array((0.10, 0.36, 0.46)) * (1.15 - 0.19 * level)
+    border = np.minimum(np.minimum(y, 1.0 - y), np.minimum(x, width / height - x)) < 0.045
+    sky[border] = (0.12, 0.09, 0.07)
+    return (sky.clip(0.0, 1.0) * 255.0).astype(np.uint8)
