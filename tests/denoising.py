@@ -1,0 +1,27 @@
+"""Runs frames through the device."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+import pytest
+
+from svgf_cl import Denoiser, Frame, Settings, devices
+
+
+def feed(*frames: Frame, **chosen: Any) -> tuple[np.ndarray, Denoiser]:
+    """Denoise a sequence with these settings: the last picture, and the denoiser with all stages of that frame."""
+    den = Denoiser(frames[0].shape, settings=Settings(**chosen), keep_stages=True)
+    return [den.denoise(frame) for frame in frames][-1], den
+
+
+@contextmanager
+def vector_width(width: int | None) -> Iterator[None]:
+    """Denoisers made inside treat so many pixels as one vector; None leaves it to the device."""
+    with pytest.MonkeyPatch.context() as patch:
+        if width:
+            patch.setattr(devices, "vector_width", lambda device: width)
+        yield

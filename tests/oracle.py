@@ -1,0 +1,99 @@
+"""Every kernel, one at a time, against the float64 oracle on the very same input: cases and tolerances."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+
+import pytest
+
+from svgf_cl import Frame, Settings
+from svgf_cl.accuracy import Deviation, deviations
+from tests.denoising import vector_width
+from tests.frames import FULL, PLAIN, SPLIT, bumpy_sequence, traced_sequence
+
+# Largest error of any pixel, relative as defined in svgf_cl.accuracy; about three times what was measured. float32
+# rounds by 2^-24 = 6e-8 of a value. Where an error exceeds a few of these, something amplifies it.
+TOLERANCES = {
+    "normal": 4e-7,  # a handful of roundings
+    "depth": 0.0,  # copied
+    "demodulated": 4e-7,
+    "modulated": 4e-7,
+    "history_length": 4e-7,
+    "accumulated": 5e-6,  # a dim mean of bright taps, each off by a rounding
+    "mean": 2e-5,
+    "moment_variance": 4e-5,  # squares of differences
+    "variance": 4e-5,  # the cosine to the power of 128, and exp of up to -87 amplify a rounding that often
+    "level": 3e-5,
+    "level_variance": 4e-5,  # the same weights squared
+    "antialiased": 1.5e-4,  # chroma is a small difference of large numbers
+    "resolved": 5e-5,  # inverting the tone map amplifies by 1 + Y
+}
+
+# Share of pixels that may be decided otherwise, where a tap lies within rounding of a threshold. None was, on PoCL.
+DECIDED_OTHERWISE = 5e-4
+
+# The whole pipeline over a sequence against the whole oracle: errors of one frame are the next frame's input, yet they
+# do not build up, as the filter is an average. Measured: 3e-5.
+PIPELINE_TOLERANCE = 1e-4
+
+
+@dataclass(frozen=True)
+class Case:
+    """A sequence, how to filter it, and the width of the vectors that do it."""
+
+    frames: Callable[[], Sequence[Frame]]
+    settings: Settings = field(default_factory=Settings)
+    width: int | None = None
+
+
+# No two settings alike, so that no two can be mixed up.
+UNUSUAL = Settings(
+    iterations=3,
+    sigma_depth=2.0,
+    sigma_luminance=3.0,
+    depth_slope_floor=4e-3,
+    alpha_color=0.15,
+    alpha_moments=0.25,
+    depth_threshold=0.03,
+    normal_threshold=0.8,
+    taa=True,
+    alpha_taa=0.3,
+)
+
+# Narrow vectors compile faster, so they serve for whatever needs kernels of its own.
+CASES = {
+    "plain": Case(partial(bumpy_sequence, PLAIN)),
+    "full, antialiased": Case(partial(bumpy_sequence, FULL), Settings(taa=True)),
+    "split": Case(partial(bumpy_sequence, SPLIT)),
+    "split, unusual settings": Case(partial(bumpy_sequence, SPLIT), UNUSUAL),
+    "traced, antialiased": Case(partial(traced_sequence, FULL), Settings(taa=True)),
+    "traced, split": Case(partial(traced_sequence, SPLIT)),
+    "albedo alone": Case(partial(bumpy_sequence, ("color", "albedo")), width=1),
+    "emission alone": Case(partial(bumpy_sequence, ("color", "emission"), motion=2), Settings(sigma_normal=1), 4),
+    "ids alone": Case(partial(bumpy_sequence, ("color", "id"), motion=2), Settings(sigma_normal=8), 1),
+    "plain split": Case(partial(bumpy_sequence, SPLIT[:2], motion=2), Settings(taa=True), 8),
+}
+
+every_case = pytest.mark.parametrize("case", CASES)
+antialiased_cases = pytest.mark.parametrize("case", [name for name, case in CASES.items() if case.settings.taa])
+
+
+@functools.cache
+def measured(case: str) -> dict[str, Deviation]:
+    """How far each stage lies off the oracle; "out" goes by the name of what it is, modulated or resolved."""
+    chosen = CASES[case]
+    with vector_width(chosen.width):
+        found = deviations(chosen.frames(), chosen.settings)
+    return found | {"resolved" if chosen.settings.taa else "modulated": found.pop("out")}
+
+
+def assert_follows_oracle(case: str, *stages: str) -> None:
+    """Every one of these stages, and for "level" and "level_variance" every level, keeps its tolerance."""
+    for name, deviation in measured(case).items():
+        kind = "level" + name[len("level_1") :] if name.startswith("level_") else name
+        if kind in stages:
+            assert deviation.largest <= TOLERANCES[kind], deviation
+            assert deviation.decided_otherwise <= DECIDED_OTHERWISE, deviation
