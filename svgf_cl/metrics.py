@@ -67,14 +67,21 @@ def ssim(shown: Linear, wanted: Linear) -> float:
     if min(shown.shape[:2]) < SSIM_WINDOW:
         height, width, _ = shown.shape
         raise SvgfError(f"SSIM: expected pictures of at least {SSIM_WINDOW}x{SSIM_WINDOW} pixels, got {width}x{height}")
-    try:
-        from skimage.metrics import structural_similarity
-    except ImportError as error:
-        raise SvgfError(f"SSIM needs scikit-image ({error}): pip install 'svgf_cl[metrics]'") from error
+    require_ssim()
+    from skimage.metrics import structural_similarity
+
     similarity = structural_similarity(
         shown, wanted, channel_axis=-1, data_range=1.0, gaussian_weights=True, sigma=1.5, use_sample_covariance=False
     )
     return float(similarity)
+
+
+def require_ssim() -> None:
+    """Raise `SvgfError`, with the command that installs it, where scikit-image is missing."""
+    try:
+        import skimage.metrics  # noqa: F401
+    except ModuleNotFoundError as error:
+        raise SvgfError(f"SSIM needs scikit-image ({error}): pip install 'svgf_cl[metrics]'") from error
 
 
 def relmse(picture: Linear, reference: Linear) -> float:

@@ -13,7 +13,7 @@ from svgf_cl.cli.options import Output, Size, parse_size
 from svgf_cl.cli.scenes import require_tracer
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.files import make_folder
-from svgf_cl.metrics import Metrics
+from svgf_cl.metrics import Metrics, require_ssim
 
 
 def demo(
@@ -35,6 +35,7 @@ def demo(
       svgf-cl demo --frames 8 --size 320x180 --reference-spp 64 -o out/quick
     """
     require_tracer()
+    require_ssim()
     from svgf_cl.demo import Demo
 
     run = Demo(make_folder(output), frames, parse_size(size), reference_spp)

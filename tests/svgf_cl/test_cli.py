@@ -270,6 +270,16 @@ def test_rendering_without_the_tracer_says_how_to_get_it(tmp_path: Path, refused
     refused("pip install 'svgf_cl[tracer]'", "demo", "-o", tmp_path)
 
 
+def test_measuring_without_scikit_image_says_how_to_get_it(
+    rendered: Path, tmp_path: Path, refused, monkeypatch
+) -> None:
+    for module in ("skimage", "skimage.metrics"):
+        monkeypatch.setitem(sys.modules, module, None)
+    refused("pip install 'svgf_cl[metrics]'", "compare", rendered, rendered)
+    refused("pip install 'svgf_cl[metrics]'", "demo", "-o", tmp_path / "demo")
+    assert not (tmp_path / "demo").exists(), "refused before the long work, not after it"
+
+
 # Settings
 
 
