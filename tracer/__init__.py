@@ -3,6 +3,7 @@
 from .builtin import BUILTIN, builtin_scene
 from .camera import Camera, CameraPath
 from .errors import SceneError
+from .loading import load_scene
 from .render import render_frame, render_reference, render_sequence
 from .scene import Scene
 
@@ -13,6 +14,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "builtin_scene",
+    "load_scene",
     "render_frame",
     "render_reference",
     "render_sequence",

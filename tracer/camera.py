@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .errors import SceneError
 from .vectors import Float64
@@ -68,7 +67,7 @@ class Camera:
         position, look_at, *rest = parts
         fov_y = rest[0][0] if rest else cls.fov_y
         up = rest[1] if len(rest) == 2 else cls.up
-        return cls(_vector(position), _vector(look_at), _vector(up), fov_y)
+        return cls(vector(position), vector(look_at), vector(up), fov_y)
 
     def basis(self) -> Float64:
         """Rows right, up, forward: an orthonormal (3, 3) matrix that turns world directions into the camera's."""
@@ -144,7 +143,7 @@ class CameraPath:
         # One more keyframe at either end, in line with the last two, lets the spline reach the ends.
         padded = np.concatenate([[2 * keys[0] - keys[1]], keys, [2 * keys[-1] - keys[-2]]])
         values = _catmull_rom(padded[int(segment) : int(segment) + 4], s)
-        return Camera(_vector(values[0:3]), _vector(values[3:6]), _vector(values[6:9]), float(values[9]))
+        return Camera(vector(values[0:3]), vector(values[3:6]), vector(values[6:9]), float(values[9]))
 
 
 def _catmull_rom(points: Float64, s: float) -> Float64:
@@ -160,6 +159,7 @@ def _catmull_rom(points: Float64, s: float) -> Float64:
     return weights @ points
 
 
-def _vector(values: Sequence[float] | NDArray[np.float64]) -> Vector:
+def vector(values: Iterable[float]) -> Vector:
+    """Three numbers as a tuple of floats."""
     x, y, z = values
     return float(x), float(y), float(z)

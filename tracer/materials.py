@@ -51,8 +51,12 @@ class MaterialTable:
                     images.setdefault(id(image), image)
         number = {key: index for index, key in enumerate(images)}
         self._textures = Textures(list(images.values()))
-        self._base = _Property([m.base_colour for m in materials], [number.get(id(m.base_texture), -1) for m in materials])
-        self._emission = _Property([m.emission for m in materials], [number.get(id(m.emission_texture), -1) for m in materials])
+        self._base = _Property(
+            [m.base_colour for m in materials], [number.get(id(m.base_texture), -1) for m in materials]
+        )
+        self._emission = _Property(
+            [m.emission for m in materials], [number.get(id(m.emission_texture), -1) for m in materials]
+        )
 
     def albedo(self, material: NDArray[np.int32], uv: Float32) -> Float32:
         """Reflectance (3, N) of the materials `material` (N,) at texture coordinates `uv` (2, N)."""

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .camera import Camera, CameraPath, Vector
+from .camera import Camera, CameraPath, vector
 from .errors import SceneError
 from .geometry import Instance, Triangles
 from .lights import AreaLights
@@ -60,9 +60,4 @@ def _framing(instances: Sequence[Instance]) -> Camera:
     middle, radius = (low + high) / 2.0, np.linalg.norm(high - low) / 2.0
     towards = np.array([0.35, 0.3, 1.0]) / np.linalg.norm([0.35, 0.3, 1.0])
     eye = middle + towards * max(radius, 1e-6) / np.sin(np.radians(Camera.fov_y / 2.0))
-    return Camera(_vector(eye), _vector(middle))
-
-
-def _vector(values: np.ndarray) -> Vector:
-    x, y, z = (float(value) for value in values)
-    return x, y, z
+    return Camera(vector(eye), vector(middle))

@@ -46,9 +46,7 @@ class Textures:
         return top
 
 
-def _neighbours(
-    coordinate: Float32, size: NDArray[np.int32]
-) -> tuple[NDArray[np.int32], NDArray[np.int32], Float32]:
+def _neighbours(coordinate: Float32, size: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDArray[np.int32], Float32]:
     """The two texels of one axis around a repeating texture `coordinate`, and the weight of the second."""
     position = coordinate - np.floor(coordinate)
     position *= size

@@ -51,7 +51,9 @@ class View:
         origins = np.broadcast_to(np.array(camera.position, np.float32)[:, None], rays.shape)
         hits = scene.triangles.intersect(origins, rays)
         surface = scene.triangles.surface(hits, rays.take(hits.ray, axis=1))
-        return cls(scene, camera, shape, directions, hits, surface, scene.materials.albedo(surface.material, surface.uv))
+        return cls(
+            scene, camera, shape, directions, hits, surface, scene.materials.albedo(surface.material, surface.uv)
+        )
 
     def radiance(self, random: np.random.Generator, bounces: int) -> Float32:
         """One sample of direct light, indirect light and emission (3, 3, N); the first axis tells which."""
