@@ -6,13 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 import trimesh
-from numpy.typing import NDArray
 from trimesh.transformations import rotation_matrix, translation_matrix
 
-from .camera import Camera, CameraPath
+from .camera import Camera, CameraPath, Vector, vector
 from .errors import SceneError
 from .geometry import Instance
-from .materials import Colour, Material
+from .materials import Material
 from .scene import Scene
 from .textures import Image
 
@@ -46,12 +45,12 @@ def cornell() -> Scene:
         _quad((-w, 0, b), (2 * w, 0, 0), (0, h, 0), white),
         _quad((-w, 0, f), (0, 0, b - f), (0, h, 0), Material((0.63, 0.09, 0.06))),
         _quad((w, 0, b), (0, 0, f - b), (0, h, 0), Material((0.08, 0.30, 0.36))),
-        _quad((-0.55, h - 0.01, -0.5), (1.1, 0, 0), (0, 0, 0.8), lamp),
+        _quad((-0.5, h - 0.01, -0.35), (1.0, 0, 0), (0, 0, 0.75), lamp),
         _quad((-0.5, 0.75, b + 0.01), (1.3, 0, 0), (0, 0.8, 0), Material((1.0, 1.0, 1.0), base_texture=_painting())),
         _place(trimesh.creation.box((0.55, 1.15, 0.55)), white, (-0.85, 0.575, -0.75), 20.0),
-        _place(trimesh.creation.box((0.6, 0.5, 0.6)), white, (0.55, 0.25, -0.15), -17.0),
-        _place(trimesh.creation.torus(0.2, 0.075), Material((0.80, 0.52, 0.12)), (0.55, 0.578, -0.15), smooth=True),
-        _place(trimesh.creation.icosphere(4, 0.3), Material((0.25, 0.55, 0.20)), (-0.35, 0.3, 0.35), smooth=True),
+        _place(trimesh.creation.box((0.6, 0.5, 0.6)), white, (0.6, 0.25, -0.45), -17.0),
+        _place(trimesh.creation.torus(0.2, 0.075), Material((0.80, 0.52, 0.12)), (0.6, 0.578, -0.45), smooth=True),
+        _place(trimesh.creation.icosphere(4, 0.3), Material((0.25, 0.55, 0.20)), (-0.3, 0.3, 0.2), smooth=True),
         _lattice(Material((0.30, 0.22, 0.16))),
     ]
     keyframes = [_orbit(angle) for angle in (-16.0, -8.0, 0.0, 8.0, 16.0)]
@@ -65,11 +64,11 @@ def _orbit(degrees: float) -> Camera:
     """A camera inside the open front that swings around the middle of the room and moves in a little."""
     angle = np.radians(degrees)
     radius = 3.6 - 0.012 * degrees
-    eye = (radius * np.sin(angle), 1.05 + 0.006 * degrees, -0.6 + radius * np.cos(angle))
-    return Camera((float(eye[0]), float(eye[1]), float(eye[2])), (0.0, 0.85, -0.6), fov_y=38.0)
+    eye = vector((radius * np.sin(angle), 1.05 + 0.006 * degrees, -0.6 + radius * np.cos(angle)))
+    return Camera(eye, (0.0, 0.95, -0.6), fov_y=42.0)
 
 
-def _quad(corner: Colour, right: Colour, up: Colour, material: Material) -> Instance:
+def _quad(corner: Vector, right: Vector, up: Vector, material: Material) -> Instance:
     """A rectangle; its texture's lower left texel lies at `corner`."""
     a, b, c = np.array(corner, float), np.array(right, float), np.array(up, float)
     square = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]], float)
@@ -77,7 +76,7 @@ def _quad(corner: Colour, right: Colour, up: Colour, material: Material) -> Inst
 
 
 def _place(
-    mesh: trimesh.Trimesh, material: Material, position: Colour, degrees: float = 0.0, *, smooth: bool = False
+    mesh: trimesh.Trimesh, material: Material, position: Vector, degrees: float = 0.0, *, smooth: bool = False
 ) -> Instance:
     """A mesh made by trimesh, whose axis is z, stood up, turned about the vertical and moved."""
     mesh = mesh.copy()

@@ -96,7 +96,7 @@ class Camera:
         """
         height, width = shape
         scale = height / (2.0 * math.tan(math.radians(self.fov_y) / 2.0))
-        across, above, depth = self.basis() @ offset
+        across, above, depth = np.matmul(self.basis(), offset)
         with np.errstate(divide="ignore", invalid="ignore"):
             x = across / depth * scale + (width - 1) / 2.0
             y = -above / depth * scale + (height - 1) / 2.0
@@ -156,7 +156,8 @@ def _catmull_rom(points: Float64, s: float) -> Float64:
             -(s**2) + s**3,
         ]
     )
-    return weights @ points
+    spline: Float64 = weights @ points
+    return spline
 
 
 def vector(values: Iterable[float]) -> Vector:

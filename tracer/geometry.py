@@ -21,7 +21,7 @@ class Instance:
     Parameters
     ----------
     corners : (T, 3, 3) float
-        Triangle, corner, (x, y, z).
+        Triangle, corner, (x, y, z); counter-clockwise seen from the front.
     material : Material
     normals : (T, 3, 3) float, optional
         Unit shading normals at the corners; the triangles are flat where absent.
@@ -65,6 +65,8 @@ class Surface:
     normal, face_normal : (3, K) float32
         Unit shading and geometric normal.
     uv : (2, K) float32
+    front : (K,) bool
+        Whether the ray met the side from which the corners run counter-clockwise.
     material : (K,) int32
     """
 
@@ -72,6 +74,7 @@ class Surface:
     normal: Float32
     face_normal: Float32
     uv: Float32
+    front: NDArray[np.bool_]
     material: NDArray[np.int32]
 
 
@@ -128,12 +131,14 @@ class Triangles:
         """What the rays of `direction` (3, K), one for each hit, met."""
         u, v, t = hits.u, hits.v, hits.triangle
         face_normal = self._face_normal.take(t, axis=1)
-        face_normal *= -np.copysign(np.float32(1), dot(face_normal, direction))
+        front = dot(face_normal, direction) < 0
+        face_normal *= np.where(front, np.float32(1), np.float32(-1))
         normal = normalise(_interpolate(self._normals, t, u, v))
         normal *= np.copysign(np.float32(1), dot(normal, face_normal))
         origin = _interpolate((self.corner, self.edge1, self.edge2), t, u, v)
         origin += self.lift * face_normal
-        return Surface(origin, normal, face_normal, _interpolate(self._uv, t, u, v), self.material.take(t))
+        uv = _interpolate(self._uv, t, u, v)
+        return Surface(origin, normal, face_normal, uv, front, self.material.take(t))
 
     def positions(self, triangle: NDArray[np.integer], u: Float32, v: Float32) -> Float64:
         """World positions (3, K) in double precision."""

@@ -80,13 +80,14 @@ def _lamp_light(scene: Scene, surface: Surface, random: np.random.Generator) -> 
     position, lamp_normal, radiance = scene.lights.sample(random.random((3, surface.normal.shape[1]), np.float32))
     toward = position - surface.origin
     cosine = np.maximum(dot(toward, surface.normal), 0)
-    lamp_cosine = dot(toward, lamp_normal)
+    # Lamps shine to their front only.
+    lamp_cosine = np.maximum(-dot(toward, lamp_normal), 0)
     squared = dot(toward, toward)
     # Both cosines carry a factor of the distance, hence its fourth power.
-    geometry = cosine * np.abs(lamp_cosine) / np.maximum(np.float32(np.pi) * squared * squared, np.float32(1e-30))
+    geometry = cosine * lamp_cosine / np.maximum(np.float32(np.pi) * squared * squared, np.float32(1e-30))
     geometry *= dot(toward, surface.face_normal) > 0
     # End the shadow ray in front of the lamp, as far as rays start in front of a surface.
-    toward -= scene.triangles.lift * np.copysign(np.float32(1), lamp_cosine) * lamp_normal
+    toward += scene.triangles.lift * lamp_normal
     geometry *= ~scene.triangles.occluded(surface.origin, toward, reach=1.0)
     radiance *= geometry
     return radiance

@@ -23,21 +23,21 @@ class AreaLights:
 
     def __init__(self, triangles: Triangles, materials: Sequence[Material], table: MaterialTable) -> None:
         brightness = np.array([LUMINANCE @ material.mean_emission() for material in materials])
-        chosen = np.flatnonzero(brightness[triangles.material] > 0.0)
-        brightness = brightness[triangles.material[chosen]]
-        normal = np.cross(triangles.edge1[:, chosen], triangles.edge2[:, chosen], axis=0).astype(np.float64)
-        power = brightness * np.linalg.norm(normal, axis=0) / 2.0
-        chosen, brightness, normal, power = (a[..., power > 0.0] for a in (chosen, brightness, normal, power))
-        self.count = len(chosen)
-        self._triangles, self._materials, self._triangle = triangles, table, chosen
-        self._cumulative = (np.cumsum(power) / power.sum())[:-1].astype(np.float32)
-        self._inverse_density = (power.sum() / brightness).astype(np.float32)
-        self._normal = normalise(normal).astype(np.float32)
+        normal = np.cross(triangles.edge1, triangles.edge2, axis=0).astype(np.float64)
+        power = brightness[triangles.material] * np.linalg.norm(normal, axis=0) / 2.0
+        lamps = np.flatnonzero(power > 0.0)
+        self.count = len(lamps)
+        self._triangles, self._materials, self._triangle = triangles, table, lamps
+        # Without the last value, which rounding may leave below the largest random number.
+        self._cumulative = (np.cumsum(power[lamps]) / power.sum())[:-1].astype(np.float32)
+        self._inverse_density = (power.sum() / brightness[triangles.material[lamps]]).astype(np.float32)
+        self._normal = normalise(normal[:, lamps]).astype(np.float32)
 
     def sample(self, u: Float32) -> tuple[Float32, Float32, Float32]:
-        """Points on lamps for uniform numbers `u` (3, N): position, unit normal, radiance / density, each (3, N).
+        """Points on lamps for uniform numbers `u` (3, N) in [0, 1).
 
-        The density is per unit of area.
+        Returns their position, the unit normal of the lamp's front, and radiance divided by the density per unit of
+        area, each (3, N).
         """
         pick = np.searchsorted(self._cumulative, u[0], side="right")
         triangle = self._triangle.take(pick)

@@ -76,14 +76,16 @@ def _load(path: Path) -> tuple[trimesh.Scene, list[dict[str, Any]]]:
 
 def _instance(mesh: trimesh.Trimesh, transform: np.ndarray, materials: _Materials) -> Instance:
     """A mesh moved to its place in the world."""
-    corners = trimesh.transform_points(mesh.vertices, transform)[mesh.faces]
+    # A mirrored object turns its triangles over, and with them the side that emits light.
+    faces = mesh.faces if np.linalg.det(transform[:3, :3]) > 0.0 else mesh.faces[:, ::-1]
+    corners = trimesh.transform_points(mesh.vertices, transform)[faces]
     normals = None
     # trimesh makes up smooth normals for every mesh that is asked for them: only those of the file are in its cache.
     if "vertex_normals" in mesh._cache:
         moved = mesh.vertex_normals @ np.linalg.inv(transform[:3, :3])
-        normals = trimesh.unitize(moved)[mesh.faces]
+        normals = trimesh.unitize(moved)[faces]
     uv = getattr(mesh.visual, "uv", None)
-    return Instance(corners, materials.of(mesh), normals, None if uv is None else np.asarray(uv)[mesh.faces])
+    return Instance(corners, materials.of(mesh), normals, None if uv is None else np.asarray(uv)[faces])
 
 
 class _Materials:

@@ -16,7 +16,7 @@ Colour = tuple[float, float, float]
 
 @dataclass(frozen=True, eq=False)
 class Material:
-    """A double-sided Lambertian surface that may emit light, from both sides.
+    """A Lambertian surface, the same on both sides, that may emit light from its front.
 
     Parameters
     ----------

@@ -59,7 +59,7 @@ class View:
         """One sample of direct light, indirect light and emission (3, 3, N); the first axis tells which."""
         result = np.zeros((3, *self.directions.shape), np.float32)
         direct, indirect = reflected_light(self.scene, self.surface, self.albedo, random, bounces)
-        emission = self.scene.materials.emission(self.surface.material, self.surface.uv)
+        emission = self.scene.materials.emission(self.surface.material, self.surface.uv) * self.surface.front
         if self.scene.sky is not None:
             result[2] = self.scene.sky
         for target, values in zip(result, (direct, indirect, emission), strict=True):
@@ -67,7 +67,10 @@ class View:
         return result
 
     def features(self, previous: Camera) -> dict[str, NDArray[np.generic]]:
-        """The G-buffer as planes, (3, N) or (N,), by the name of the `Frame` field; `previous` is the last frame's camera."""
+        """The G-buffer as planes, (3, N) or (N,), by the name of the `Frame` field.
+
+        `previous` is the camera of the frame before.
+        """
         count = self.directions.shape[1]
         triangles, triangle = self.scene.triangles, self.hits.triangle
         normal, albedo = np.zeros((3, count), np.float32), np.ones((3, count), np.float32)
