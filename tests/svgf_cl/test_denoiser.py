@@ -1,0 +1,290 @@
+"""The whole pipeline: it follows the oracle over a sequence, and keeps its promises whatever image comes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pyopencl as cl
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
+
+from svgf_cl import Denoiser, Frame, Settings, SvgfError
+from svgf_cl.accuracy import DECISION, relative_error
+from svgf_cl.frame import CHANNELS, Shape
+from svgf_cl.passes import Inputs, pipeline
+from svgf_cl.reference import Reference
+from svgf_cl.settings import RANGES
+from tests.denoising import feed, vector_width
+from tests.frames import FULL, PLAIN, SHAPE, SPLIT, TINY, bumpy_sequence, only, traced_sequence, wall
+from tests.oracle import DECIDED_OTHERWISE, PIPELINE_TOLERANCE
+
+TAA = Settings(taa=True)
+
+
+def assert_alike(got: np.ndarray, expected: np.ndarray, otherwise: float = DECIDED_OTHERWISE) -> None:
+    """Two pictures are the same but for rounding, and for a few pixels decided otherwise."""
+    error = relative_error(got, expected)
+    decided_otherwise = ~(error <= DECISION)
+    assert decided_otherwise.mean() <= otherwise
+    assert error[~decided_otherwise].max(initial=0.0) <= PIPELINE_TOLERANCE
+
+
+class TestOracle:
+    @pytest.mark.parametrize(
+        ("frames", "chosen"),
+        [
+            (bumpy_sequence(PLAIN, count=10), Settings()),
+            (bumpy_sequence(FULL, count=10), TAA),
+            (bumpy_sequence(SPLIT, count=10), Settings(alpha_color=0, alpha_moments=0)),
+            (traced_sequence(FULL, count=8), TAA),
+            (traced_sequence(SPLIT, count=8), TAA),
+        ],
+        ids=["plain", "full", "split", "traced", "traced split"],
+    )
+    def test_errors_do_not_build_up_over_a_sequence(self, frames: Sequence[Frame], chosen: Settings) -> None:
+        den, oracle = Denoiser(frames[0].shape, settings=chosen), Reference(frames[0].shape, chosen)
+        for frame in frames:
+            assert_alike(den.denoise(frame), oracle.denoise(frame))
+
+    @settings(max_examples=40, deadline=None, derandomize=True)
+    @given(
+        shape=st.tuples(st.integers(1, 24), st.integers(1, 40)),
+        variant=st.sampled_from(((PLAIN, False), (FULL, True), (SPLIT, True))),
+        chosen=st.fixed_dictionaries(
+            {
+                "iterations": st.integers(*RANGES["iterations"]),
+                "sigma_luminance": st.floats(0.5, 10),
+                "sigma_depth": st.floats(0.1, 10),
+                "depth_slope_floor": st.floats(1e-3, 0.1),
+                **{name: st.floats(0, 1) for name in ("alpha_color", "alpha_moments", "alpha_taa", "depth_threshold")},
+                "normal_threshold": st.floats(-1, 0.99),
+            }
+        ),
+        seed=st.integers(0, 999),
+    )
+    def test_any_size_fields_and_settings(self, shape: Shape, variant: Any, chosen: dict, seed: int) -> None:
+        fields, taa = variant
+        wanted = Settings(taa=taa, **chosen)
+        den, oracle = Denoiser(shape, settings=wanted), Reference(shape, wanted)
+        for frame in bumpy_sequence(fields, count=3, shape=shape, seed=seed):
+            out = den.denoise(frame)
+            assert out.shape == (*shape, 3)
+            assert np.isfinite(out).all()
+            assert_alike(out, oracle.denoise(frame), otherwise=0.02)
+
+
+def sequence_at(width: int) -> list[np.ndarray]:
+    with vector_width(width):
+        den = Denoiser(SHAPE, settings=TAA)
+    return [den.denoise(frame) for frame in bumpy_sequence(SPLIT)]
+
+
+@pytest.mark.parametrize("width", [1, 4, 8])
+def test_vector_width_does_not_matter(width: int) -> None:
+    for got, expected in zip(sequence_at(width), sequence_at(16), strict=True):
+        assert_alike(got, expected)
+
+
+def test_same_input_gives_the_same_bits() -> None:
+    assert_array_equal(sequence_at(16), sequence_at(16))
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 2), (2, 1), (1, 100), (100, 1), (3, 17), (13, 31), (64, 64)])
+@pytest.mark.parametrize("chosen", [Settings(), TAA], ids=["plain", "taa"])
+def test_any_size_keeps_a_constant_image(shape: Shape, chosen: Settings) -> None:
+    den = Denoiser(shape, settings=chosen)
+    fields = FULL if chosen.taa else PLAIN
+    for _ in range(3):
+        out = den.denoise(only(wall(shape, emission=0.0, albedo=0.5, id=1), fields))
+    assert_allclose(out, 0.5, rtol=1e-5)
+
+
+def test_static_noise_converges() -> None:
+    rng = np.random.default_rng(0)
+    frames = [wall(color=rng.exponential(0.5, (*SHAPE, 3))) for _ in range(64)]
+    errors = [np.abs(feed(*frames[:count], alpha_color=0, alpha_moments=0)[0] - 0.5).mean() for count in (1, 8, 64)]
+    assert errors[0] > 2 * errors[1] > 4 * errors[2]
+
+
+def test_without_taa_the_result_is_what_taa_is_given() -> None:
+    frames = bumpy_sequence(SPLIT, shape=TINY)
+    assert_array_equal(feed(*frames)[0], feed(*frames, taa=True)[1].stage("modulated"))
+
+
+class TestReset:
+    @pytest.mark.parametrize("chosen", [Settings(), TAA], ids=["plain", "taa"])
+    def test_camera_cut_leaves_no_trace(self, chosen: Settings) -> None:
+        before, *after = bumpy_sequence(SPLIT)
+        den, fresh = Denoiser(SHAPE, settings=chosen), Denoiser(SHAPE, settings=chosen)
+        den.denoise(replace(before, direct=1e6 * before.direct))
+        den.reset()
+        for frame in after:
+            assert_array_equal(den.denoise(frame), fresh.denoise(frame))
+
+    def test_before_any_frame_is_harmless(self) -> None:
+        den = Denoiser(TINY)
+        den.reset()
+        assert_allclose(den.denoise(wall(TINY)), 0.5, rtol=1e-6)
+
+    def test_denoisers_of_one_queue_do_not_mix(self, queue: cl.CommandQueue) -> None:
+        one, other, alone = (Denoiser(SHAPE, queue=queue) for _ in range(3))
+        for frame, disturbance in zip(bumpy_sequence(SPLIT), bumpy_sequence(SPLIT, seed=1), strict=True):
+            other.denoise(disturbance)
+            assert_array_equal(one.denoise(frame), alone.denoise(frame))
+
+
+every_part = pytest.mark.parametrize("part", [np.s_[3, 4], np.s_[:]], ids=["pixel", "image"])
+
+
+def spoiled(frame: Frame, name: str, value: float, part: Any) -> Frame:
+    field = getattr(frame, name).copy()
+    field[part] = value
+    return replace(frame, **{name: field})
+
+
+@pytest.mark.parametrize("name", [name for name in CHANNELS if name not in ("id", "color")])
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1e30, -1e30, 3e38], ids=str)
+@every_part
+class TestFaultyInput:
+    GOOD = replace(bumpy_sequence(SPLIT, count=1, shape=TINY)[0], motion=np.zeros((*TINY, 3), np.float32))
+    # Fast enough to forget the squares of 1e15 within the test.
+    BRISK = Settings(alpha_color=0.8, alpha_moments=0.8, alpha_taa=0.8, taa=True)
+    FRAMES = 60
+
+    @pytest.fixture(scope="class")
+    def expected(self) -> np.ndarray:
+        den = Denoiser(TINY, settings=self.BRISK)
+        return [den.denoise(self.GOOD) for _ in range(self.FRAMES)][-1]
+
+    def test_leaves_all_stages_finite(self, name: str, value: float, part: Any) -> None:
+        out, den = feed(self.GOOD, spoiled(self.GOOD, name, value, part), self.GOOD, taa=True)
+        assert np.isfinite(out).all()
+        assert all(np.isfinite(den.stage(stage)).all() for stage in den.stages)
+
+    def test_is_forgotten(self, name: str, value: float, part: Any, expected: np.ndarray) -> None:
+        den = Denoiser(TINY, settings=self.BRISK)
+        den.denoise(spoiled(self.GOOD, name, value, part))
+        out = [den.denoise(self.GOOD) for _ in range(self.FRAMES)][-1]
+        assert_allclose(out, expected, rtol=1e-4, atol=1e-6)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+@every_part
+def test_faulty_colour_is_finite(value: float, part: Any) -> None:
+    (good,) = bumpy_sequence(PLAIN, count=1)
+    assert np.isfinite(feed(good, spoiled(good, "color", value, part), good)[0]).all()
+
+
+def test_firefly_is_bounded() -> None:
+    frame = spoiled(wall(), "color", 1e30, np.s_[20, 20])
+    out, _ = feed(frame, frame)
+    assert np.isfinite(out).all()
+    assert out.max() <= 1e15
+
+
+class TestStages:
+    @pytest.mark.parametrize(("fields", "signals"), [(FULL, 1), (SPLIT, 2)])
+    def test_shapes(self, fields: tuple[str, ...], signals: int) -> None:
+        _, den = feed(*bumpy_sequence(fields, count=1), taa=True)
+        pictures = {"normal", "modulated", "antialiased"}
+        shared = {"depth", "history_length"}
+        for name in den.stages:
+            shape = den.stage(name).shape
+            if name in shared:
+                assert shape == SHAPE
+            elif name in pictures:
+                assert shape == (*SHAPE, 3)
+            elif "variance" in name or name == "mean":
+                assert shape == (signals, *SHAPE)
+            else:
+                assert shape == (signals, *SHAPE, 3)
+
+    def test_overwritten_one_tells_of_keep_stages(self) -> None:
+        den = Denoiser(TINY)
+        den.denoise(wall(TINY))
+        with pytest.raises(SvgfError, match=r"'demodulated' was overwritten .*keep_stages=True"):
+            den.stage("demodulated")
+
+    def test_those_that_survive_are_the_same_as_kept_ones(self) -> None:
+        frames = bumpy_sequence(SPLIT, count=2)
+        _, kept = feed(*frames)
+        den = Denoiser(SHAPE)
+        for frame in frames:
+            den.denoise(frame)
+        for name in ("normal", "depth", "history_length", "mean", "moment_variance", "level_1", "level_5"):
+            assert_array_equal(den.stage(name), kept.stage(name))
+
+    def test_unknown_one_is_named(self) -> None:
+        den = Denoiser(TINY)
+        with pytest.raises(SvgfError, match="expected one of none before a frame; got 'level_1'"):
+            den.stage("level_1")
+        den.denoise(wall(TINY))
+        with pytest.raises(SvgfError, match=r"expected one of normal, depth, .*; got 'blur'"):
+            den.stage("blur")
+
+    def test_none_before_a_frame_and_after_reset(self) -> None:
+        den = Denoiser(TINY)
+        assert den.stages == []
+        den.denoise(wall(TINY))
+        den.reset()
+        assert den.stages == []
+
+
+class TestMemory:
+    def test_none_before_a_frame_and_after_reset(self) -> None:
+        den = Denoiser(TINY)
+        assert den.nbytes == 0
+        den.denoise(wall(TINY))
+        assert den.nbytes > 0
+        den.reset()
+        assert den.nbytes == 0
+
+    def test_sharing_saves(self) -> None:
+        shared = Denoiser(TINY)
+        shared.denoise(wall(TINY))
+        assert shared.nbytes < feed(wall(TINY))[1].nbytes
+
+
+class TestProfile:
+    def test_times_every_pass_of_the_table(self) -> None:
+        frame = bumpy_sequence(FULL, count=1)[0]
+        den = Denoiser(SHAPE, settings=TAA)
+        den.denoise(frame)
+        times = den.profile()
+        assert list(times) == [step.name for step in pipeline(Inputs.of(frame), TAA)]
+        assert all(time > 0 for time in times.values())
+
+    def test_is_empty_before_a_frame(self) -> None:
+        assert Denoiser(TINY).profile() == {}
+
+    def test_needs_a_queue_that_profiles(self, context: cl.Context) -> None:
+        den = Denoiser(TINY, queue=cl.CommandQueue(context))
+        den.denoise(wall(TINY))
+        with pytest.raises(SvgfError, match="PROFILING_ENABLE"):
+            den.profile()
+
+
+def test_queue_is_the_one_given(queue: cl.CommandQueue) -> None:
+    assert Denoiser(TINY, queue=queue).queue is queue
+
+
+@pytest.mark.parametrize("shape", [(np.int64(2), np.uint8(3)), [2, 3], np.array([2, 3])], ids=str)
+def test_shape_may_be_any_two_whole_numbers(shape: Any) -> None:
+    assert Denoiser(shape).shape == (2, 3)
+
+
+@pytest.mark.parametrize("shape", [None, 5, (5,), (5, 5, 3), (5.0, 5.0), "ab"], ids=str)
+def test_shape_must_be_two_whole_numbers(shape: Any) -> None:
+    with pytest.raises(SvgfError, match=r"expected shape \(height, width\), got"):
+        Denoiser(shape)
+
+
+@pytest.mark.parametrize("shape", [(0, 5), (5, 0), (-1, 5)])
+def test_shape_must_hold_a_pixel(shape: Shape) -> None:
+    with pytest.raises(SvgfError, match="at least 1 x 1 pixel, got"):
+        Denoiser(shape)

@@ -1,0 +1,51 @@
+"""The planar layout: images survive the way in and out, and every tap stays inside the plane."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_array_equal
+
+from svgf_cl.planes import HALO, ROW_ALIGNMENT, Layout
+
+layouts = st.builds(Layout, height=st.integers(1, 70), width=st.integers(1, 70))
+
+
+@given(layouts, st.integers(1, 3))
+def test_crop_undoes_embed(layout: Layout, count: int) -> None:
+    images = np.arange(1, 1 + count * layout.height * layout.width, dtype=np.float32)
+    images = images.reshape(count, layout.height, layout.width)
+    planes = layout.embed(images)
+    assert planes.nbytes == layout.nbytes(count)
+    assert_array_equal(layout.crop(planes), images)
+
+
+@given(layouts)
+def test_outside_the_image_is_zero(layout: Layout) -> None:
+    assert layout.embed(np.ones((1, layout.height, layout.width))).sum() == layout.height * layout.width
+
+
+@given(layouts)
+def test_rows_hold_whole_vectors_and_a_halo_on_both_sides(layout: Layout) -> None:
+    assert layout.pitch % ROW_ALIGNMENT == 0
+    assert layout.width + 2 * HALO <= layout.pitch < layout.width + 2 * HALO + ROW_ALIGNMENT
+
+
+@given(layouts)
+def test_size_is_the_kernels_int4(layout: Layout) -> None:
+    assert layout.size.dtype == np.int32
+    assert layout.size.tolist() == [layout.width, layout.height, layout.pitch, layout.rows * layout.pitch]
+
+
+def test_crop_is_a_view() -> None:
+    layout = Layout(2, 3)
+    planes = np.zeros(2 * layout.plane)
+    layout.crop(planes)[1, 0, 2] = 1
+    assert planes.sum() == 1
+
+
+@pytest.mark.parametrize("iterations", range(1, 6))
+def test_halo_holds_the_reach_of_every_level(iterations: int) -> None:
+    assert 2 * 2 ** (iterations - 1) <= HALO
