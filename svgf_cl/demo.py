@@ -3,7 +3,8 @@
 Every step leaves its result in files and the next one reads them there::
 
     noisy/frame.0000.exr ...        what the tracer rendered, with its G-buffer
-    denoised/frame.0000.exr ...
+    filtered/frame.0000.exr ...     SVGF alone
+    denoised/frame.0000.exr ...     after temporal antialiasing too, as in the paper
     reference/reference.0000.exr    of the compared frames only: they cost the most
     still.0000.png                  the compared frames side by side, with the piece that differs most
     preview.webp                    noisy and denoised, animated
@@ -20,14 +21,18 @@ import numpy as np
 
 import tracer
 from svgf_cl.denoiser import Denoiser
+from svgf_cl.display import Bytes, to_bytes, write_png
 from svgf_cl.files import make_folder
 from svgf_cl.frame import Shape
 from svgf_cl.metrics import Metrics, measure
-from svgf_cl.pictures import Bytes, still, to_bytes, write_png, write_preview
+from svgf_cl.pictures import still, write_preview
 from svgf_cl.sequence import frame_path, read_picture, write_frame, write_picture
+from svgf_cl.settings import Settings
 
 # From here on the history is long enough for the filter to be judged by.
 WARM = 8
+# Rays go through another point of the pixel in every frame; antialiasing makes smooth edges of that.
+SETTINGS = Settings(taa=True)
 
 
 @dataclass(frozen=True)
@@ -64,19 +69,18 @@ class Demo:
         return sorted({0, warm, (warm + last) // 2, last})
 
     def path(self, kind: str, number: int) -> Path:
-        """Name the file of a ``noisy``, ``denoised`` or ``reference`` frame."""
+        """Name the file of a ``noisy``, ``filtered``, ``denoised`` or ``reference`` frame."""
         return frame_path(self.folder / kind, number, "reference" if kind == "reference" else "frame")
 
     def denoise(self, denoiser: Denoiser) -> Iterator[dict[str, float]]:
         """Render, denoise and write one frame after the other; yield the milliseconds of each pass."""
-        for kind in ("noisy", "denoised"):
+        for kind in ("noisy", "filtered", "denoised"):
             make_folder(self.folder / kind)
-        # Through the pixel centres: an offset that changes from frame to frame makes edges tremble, and only temporal
-        # antialiasing, which is off by default, would turn it into smooth ones.
-        noisy = tracer.render_sequence(self.scene, self.scene.camera_path, self.shape, self.frames, jitter=False)
+        noisy = tracer.render_sequence(self.scene, self.scene.camera_path, self.shape, self.frames)
         for number, frame in enumerate(noisy):
             write_frame(self.path("noisy", number), frame)
             write_picture(self.path("denoised", number), denoiser.denoise(frame))
+            write_picture(self.path("filtered", number), denoiser.stage("modulated"))
             yield denoiser.profile()
 
     def render_references(self, advance: Callable[[], None]) -> None:
@@ -89,13 +93,12 @@ class Demo:
             )
             write_picture(self.path("reference", number), picture)
 
-    def measure(self) -> dict[int, tuple[Metrics, Metrics]]:
-        """Measure noisy and denoised against the reference, by frame."""
-        return {number: self._measure(number) for number in self.compared}
-
-    def _measure(self, number: int) -> tuple[Metrics, Metrics]:
-        noisy, denoised, reference = (read_picture(self.path(k, number)) for k in ("noisy", "denoised", "reference"))
-        return measure(noisy, reference), measure(denoised, reference)
+    def measure(self, kind: str) -> dict[int, Metrics]:
+        """Measure the compared frames of one kind against the reference, by number."""
+        return {
+            number: measure(read_picture(self.path(kind, number)), read_picture(self.path("reference", number)))
+            for number in self.compared
+        }
 
     def write_stills(self) -> None:
         """Write the compared frames side by side as PNG."""

@@ -10,7 +10,7 @@ relMSE  linear HDR          ``mean((a - b)**2 / (b**2 + 0.01))``, `b` the refere
                             where equal; one bright dot can outweigh all else
 ======  ==================  ==========================================================================================
 
-Display-referred: exposed, clipped to 0..1 and sRGB-encoded (`svgf_cl.pictures.display`). NaN in a picture makes its
+Display-referred: exposed, clipped to 0..1 and sRGB-encoded (`svgf_cl.display.display`). NaN in a picture makes its
 metrics NaN.
 """
 
@@ -21,8 +21,8 @@ from dataclasses import astuple, dataclass
 
 import numpy as np
 
+from svgf_cl.display import Linear, display
 from svgf_cl.errors import SvgfError
-from svgf_cl.pictures import Linear, display
 
 # Least extent of a picture that scikit-image's Gaussian window of sigma 1.5 fits in.
 SSIM_WINDOW = 11

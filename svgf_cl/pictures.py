@@ -1,4 +1,4 @@
-"""Pictures for people: tone mapping, PNG files, labelled panels side by side, and an animated preview."""
+"""Pictures that show what was gained: labelled panels side by side with a magnified piece, and an animated preview."""
 
 from __future__ import annotations
 
@@ -6,50 +6,13 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 from PIL import Image, ImageDraw, ImageFont
 
+from svgf_cl.display import Bytes
 from svgf_cl.files import written_whole
-
-Linear = npt.NDArray[np.floating]
-Bytes = npt.NDArray[np.uint8]
 
 LABEL_HEIGHT = 28
 GAP = 4
-
-
-def display(linear: Linear, exposure: float = 0.0) -> npt.NDArray[np.float64]:
-    """Make a picture display-referred: expose it, clip it to 0..1, encode it with the sRGB transfer curve.
-
-    Parameters
-    ----------
-    linear : (H, W, 3) float
-        Linear scene-referred radiance with Rec. 709 primaries.
-    exposure : float, stops
-        The radiance is multiplied by ``2**exposure`` first.
-
-    Returns
-    -------
-    (H, W, 3) float64
-        0..1; NaN stays NaN.
-    """
-    clipped = np.clip(np.asarray(linear, np.float64) * 2.0**exposure, 0.0, 1.0)
-    # IEC 61966-2-1.
-    shown: npt.NDArray[np.float64] = np.where(
-        clipped <= 0.0031308, 12.92 * clipped, 1.055 * clipped ** (1 / 2.4) - 0.055
-    )
-    return shown
-
-
-def to_bytes(linear: Linear, exposure: float = 0.0) -> Bytes:
-    """Return `display` in 8 bits; NaN becomes black."""
-    return np.rint(np.nan_to_num(display(linear, exposure)) * 255).astype(np.uint8)
-
-
-def write_png(path: Path, picture: Bytes) -> None:
-    """Write a (H, W, 3) 8-bit picture as PNG, whole or not at all."""
-    with written_whole(path) as aside:
-        Image.fromarray(picture).save(aside, format="PNG")
 
 
 def write_preview(path: Path, pictures: Iterable[Bytes], fps: float = 12.0) -> None:

@@ -36,36 +36,39 @@ def demo(
     """
     require_tracer()
     require_ssim()
-    from svgf_cl.demo import Demo
+    from svgf_cl.demo import SETTINGS, Demo
 
     run = Demo(make_folder(output), frames, parse_size(size), reference_spp)
-    denoiser = Denoiser(run.shape)
+    denoiser = Denoiser(run.shape, settings=SETTINGS)
     print(f"device: {denoiser.queue.device.name.strip()} ({denoiser.queue.device.platform.name})")
     profiles = list(tracked(run.denoise(denoiser), frames, "rendering and denoising"))
     with progress_bar("references", total=len(run.compared) * reference_spp) as advance:
         run.render_references(advance)
     run.write_stills()
     run.write_preview()
-    show_gain(run.measure())
+    show_gain(*(run.measure(kind) for kind in ("noisy", "filtered", "denoised")))
     show_times(profiles)
     show_files(
-        output, ["preview.webp", *(f"still.{n:04d}.png" for n in run.compared), "noisy", "denoised", "reference"]
+        output,
+        ["preview.webp", *(f"still.{n:04d}.png" for n in run.compared), "noisy", "filtered", "denoised", "reference"],
     )
 
 
-def show_gain(metrics: Mapping[int, tuple[Metrics, Metrics]]) -> None:
-    """Print how far noisy and denoised are from the reference, one row a frame."""
-    rows = [
-        (
-            str(number),
-            f"{noisy.psnr:.2f} -> {clean.psnr:.2f}",
-            f"{clean.psnr - noisy.psnr:+.2f}",
-            f"{noisy.ssim:.3f} -> {clean.ssim:.3f}",
-            f"{noisy.relmse:.4f} -> {clean.relmse:.4f}",
+def show_gain(*stages: Mapping[int, Metrics]) -> None:
+    """Print how far noisy, filtered and antialiased pictures are from the reference, one row a frame."""
+    rows = []
+    for number in stages[0]:
+        psnr = [stage[number].psnr for stage in stages]
+        rows.append(
+            (
+                str(number),
+                " -> ".join(f"{value:.2f}" for value in psnr),
+                " -> ".join(f"{value - psnr[0]:+.2f}" for value in psnr[1:]),
+                " -> ".join(f"{stage[number].ssim:.3f}" for stage in stages),
+                " -> ".join(f"{stage[number].relmse:.4f}" for stage in stages),
+            )
         )
-        for number, (noisy, clean) in metrics.items()
-    ]
-    show("against the reference, noisy -> denoised", ("frame", "PSNR dB", "gain dB", "SSIM", "relMSE"), rows)
+    show("against the reference: noisy -> SVGF -> with TAA", ("frame", "PSNR dB", "gain dB", "SSIM", "relMSE"), rows)
 
 
 def show_files(folder: Path, names: Iterable[str]) -> None:

@@ -13,9 +13,9 @@ import typer
 from svgf_cl.cli.console import show_times, tracked
 from svgf_cl.cli.options import Exposure, Output, SettingTexts, parse_settings
 from svgf_cl.denoiser import Denoiser
+from svgf_cl.display import to_bytes, write_png
 from svgf_cl.errors import SequenceError
 from svgf_cl.files import make_folder
-from svgf_cl.pictures import to_bytes, write_png
 from svgf_cl.sequence import find_frames, read_sequence, write_picture
 from svgf_cl.settings import Settings
 

@@ -1,4 +1,4 @@
-"""Tone mapping, and the pictures people look at."""
+"""The pictures that show what was gained."""
 
 from __future__ import annotations
 
@@ -8,35 +8,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from svgf_cl import SequenceError, pictures
+from svgf_cl import pictures
 
 RNG = np.random.default_rng(5)
 
 
 def noise(height: int, width: int) -> np.ndarray:
     return RNG.integers(0, 256, (height, width, 3), np.uint8)
-
-
-@pytest.mark.parametrize(("linear", "shown"), [(-1, 0), (0, 0), (0.002, 0.02584), (0.214041, 0.5), (1, 1), (9, 1)])
-def test_the_srgb_curve(linear: float, shown: float) -> None:
-    assert pictures.display(np.full((1, 1, 3), linear)) == pytest.approx(np.full((1, 1, 3), shown), abs=1e-6)
-
-
-def test_exposure_is_in_stops() -> None:
-    linear = RNG.random((4, 4, 3))
-    np.testing.assert_array_equal(pictures.display(linear, 2), pictures.display(4 * linear))
-
-
-def test_nan_is_shown_black_and_infinity_white() -> None:
-    linear = np.array([[[np.nan, np.inf, -np.inf]]])
-    assert pictures.to_bytes(linear).tolist() == [[[0, 255, 0]]]
-
-
-def test_png_comes_back(tmp_path: Path) -> None:
-    picture = noise(5, 7)
-    pictures.write_png(tmp_path / "a.png", picture)
-    np.testing.assert_array_equal(np.asarray(Image.open(tmp_path / "a.png")), picture)
-    assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
 
 
 def test_the_preview_is_animated_and_loops(tmp_path: Path) -> None:
@@ -67,8 +45,3 @@ def test_the_still_magnifies_where_the_last_two_panels_differ_most() -> None:
 def test_stills_of_any_size(size: tuple[int, int]) -> None:
     sheet = pictures.still({name: noise(*size) for name in ("noisy", "denoised", "reference")})
     assert sheet.shape[0] == 2 * size[0] + pictures.LABEL_HEIGHT + pictures.GAP
-
-
-def test_an_unwritable_picture_is_an_error_that_names_it(tmp_path: Path) -> None:
-    with pytest.raises(SequenceError, match=r"nowhere/a\.png: cannot be written"):
-        pictures.write_png(tmp_path / "nowhere" / "a.png", noise(2, 2))

@@ -1,0 +1,40 @@
+"""Tone mapping and PNG files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio  # noqa: N813  # its documentation calls it so
+import pytest
+
+from svgf_cl import SequenceError, display
+
+RNG = np.random.default_rng(5)
+
+
+@pytest.mark.parametrize(("linear", "shown"), [(-1, 0), (0, 0), (0.002, 0.02584), (0.214041, 0.5), (1, 1), (9, 1)])
+def test_the_srgb_curve(linear: float, shown: float) -> None:
+    assert display.display(np.full((1, 1, 3), linear)) == pytest.approx(np.full((1, 1, 3), shown), abs=1e-6)
+
+
+def test_exposure_is_in_stops() -> None:
+    linear = RNG.random((4, 4, 3))
+    np.testing.assert_array_equal(display.display(linear, 2), display.display(4 * linear))
+
+
+def test_nan_is_shown_black_and_infinity_white() -> None:
+    linear = np.array([[[np.nan, np.inf, -np.inf]]])
+    assert display.to_bytes(linear).tolist() == [[[0, 255, 0]]]
+
+
+def test_png_comes_back(tmp_path: Path) -> None:
+    picture = RNG.integers(0, 256, (5, 7, 3), np.uint8)
+    display.write_png(tmp_path / "a.png", picture)
+    np.testing.assert_array_equal(oiio.ImageBuf(str(tmp_path / "a.png")).get_pixels(oiio.UINT8), picture)
+    assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
+
+
+def test_an_unwritable_picture_is_an_error_that_names_it(tmp_path: Path) -> None:
+    with pytest.raises(SequenceError, match=r"nowhere/a\.png: cannot be written"):
+        display.write_png(tmp_path / "nowhere" / "a.png", np.zeros((2, 2, 3), np.uint8))
