@@ -95,7 +95,7 @@ def _lattice(material: Material) -> Instance:
         bars.append(trimesh.creation.cylinder(0.012, segment=((1.35, 0.0, z), (1.35, 1.3, z)), sections=10))
     for y in (0.08, 1.3):
         bars.append(trimesh.creation.box((0.04, 0.04, 1.36), translation_matrix((1.35, y, -0.56))))
-    return Instance(trimesh.util.concatenate(bars).triangles, material)
+    return Instance(np.concatenate([bar.triangles for bar in bars]), material)
 
 
 def _tiles() -> Image:

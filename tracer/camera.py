@@ -84,10 +84,9 @@ class Camera:
         """
         height, width = shape
         scale = 2.0 * math.tan(math.radians(self.fov_y) / 2.0) / height
-        right, up, forward = self.basis()
         across = (x - (width - 1) / 2.0) * scale
-        down = (y - (height - 1) / 2.0) * scale
-        return right[:, None] * across - up[:, None] * down + forward[:, None]
+        above = ((height - 1) / 2.0 - y) * scale
+        return _rotate(self.basis().T, np.stack([across, above, np.ones_like(across)]))
 
     def project(self, offset: Float64, shape: tuple[int, int]) -> Float64:
         """Image position and depth, stacked (3, N), of points given relative to the eye (3, N), or of directions.
@@ -96,7 +95,7 @@ class Camera:
         """
         height, width = shape
         scale = height / (2.0 * math.tan(math.radians(self.fov_y) / 2.0))
-        across, above, depth = np.matmul(self.basis(), offset)
+        across, above, depth = _rotate(self.basis(), offset)
         with np.errstate(divide="ignore", invalid="ignore"):
             x = across / depth * scale + (width - 1) / 2.0
             y = -above / depth * scale + (height - 1) / 2.0
@@ -144,6 +143,14 @@ class CameraPath:
         padded = np.concatenate([[2 * keys[0] - keys[1]], keys, [2 * keys[-1] - keys[-2]]])
         values = _catmull_rom(padded[int(segment) : int(segment) + 4], s)
         return Camera(vector(values[0:3]), vector(values[3:6]), vector(values[6:9]), float(values[9]))
+
+
+def _rotate(matrix: Float64, vectors: Float64) -> Float64:
+    """`matrix` (3, 3) times each of `vectors` (3, N), without BLAS: its rounding may hang on the number of threads."""
+    result: Float64 = matrix[:, :1] * vectors[0]
+    result += matrix[:, 1:2] * vectors[1]
+    result += matrix[:, 2:] * vectors[2]
+    return result
 
 
 def _catmull_rom(points: Float64, s: float) -> Float64:

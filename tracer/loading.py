@@ -98,9 +98,10 @@ class _Materials:
 
     def of(self, mesh: trimesh.Trimesh) -> Material:
         """The material of a mesh; grey, or the mesh's main vertex colour, where the file names none."""
-        source = getattr(mesh.visual, "material", None)
+        visual: Any = mesh.visual
+        source = getattr(visual, "material", None)
         if source is None or source.name is None:
-            return Material(_colour(mesh.visual.main_color / 255.0)) if mesh.visual.defined else Material()
+            return Material(_colour(visual.main_color / 255.0)) if visual.defined else Material()
         if source.name not in self._made:
             make = self._from_gltf if self._documents else self._from_obj
             self._made[source.name] = make(source)
@@ -137,8 +138,9 @@ class _Materials:
 
 
 def _colour(values: Any) -> Colour:
-    r, g, b = (float(value) for value in values[:3])
-    return r, g, b
+    """Three numbers from three or more, or from one that stands for all."""
+    r, g, b = np.broadcast_to(np.ravel(values).astype(float)[:3], 3)
+    return float(r), float(g), float(b)
 
 
 def _camera(loaded: trimesh.Scene) -> Camera:

@@ -37,7 +37,8 @@ class Material:
         """Radiance (3,) averaged over the texture."""
         if self.emission_texture is None:
             return np.array(self.emission)
-        return np.array(self.emission) * LINEAR[self.emission_texture].mean((0, 1), np.float64)
+        texture: NDArray[np.float64] = LINEAR[self.emission_texture].mean((0, 1), np.float64)
+        return np.array(self.emission) * texture
 
 
 class MaterialTable:
@@ -75,7 +76,7 @@ class _Property:
         self._texture_of = np.array(textures, np.int32)
 
     def evaluate(self, textures: Textures, material: NDArray[np.int32], uv: Float32) -> Float32:
-        values = self._factors.take(material, axis=1)
+        values: Float32 = self._factors.take(material, axis=1)
         if (self._texture_of < 0).all():
             return values
         texture = self._texture_of.take(material)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -190,7 +190,7 @@ def _pixels(tile: slice, shape: Shape) -> Float64:
     return np.stack([x, y]).astype(np.float64)
 
 
-def _image(planes: NDArray[np.generic], shape: Shape) -> NDArray[np.generic]:
+def _image(planes: NDArray[Any], shape: Shape) -> NDArray[Any]:
     """(3, N) or (N,) planes as a C-contiguous image (H, W, 3) or (H, W)."""
     return np.ascontiguousarray(planes.T).reshape(*shape, *planes.shape[:-1])
 
