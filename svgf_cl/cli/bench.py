@@ -14,11 +14,13 @@ from svgf_cl.denoiser import Denoiser
 
 def bench(
     size: Annotated[list[str], typer.Option(metavar="WxH", help="Size to time; may be repeated.")] = ["1280x720"],  # noqa: B006  # never changed; typer wants the default spelled here
-    frames: Annotated[int, typer.Option(min=1, help="Timed frames per size, after warm-up.")] = 40,
-    signals: Annotated[int, typer.Option(min=1, max=2, help="2: direct and indirect light filtered apart.")] = 1,
+    frames: Annotated[int, typer.Option(metavar="N", min=1, help="Timed frames per size, after warm-up.")] = 40,
+    signals: Annotated[
+        int, typer.Option(metavar="N", min=1, max=2, help="2: direct and indirect light filtered apart.")
+    ] = 1,
     set_: SettingTexts = [],  # noqa: B006
 ) -> None:
-    r"""Time every pass and the whole frame; show the error against the float64 oracle.
+    """Time every pass and the whole frame; show the error against the float64 oracle.
 
     Input is the camera moving in a built-in room, with albedo and ids. Pass times come from OpenCL events; "device" is
     their sum, "frame" is the whole call with numpy arrays in and out, copies included.

@@ -15,14 +15,18 @@ from svgf_cl.sequence import extent, find_numbered, frame_number, read_picture, 
 
 
 def compare(
-    a: Annotated[Path, typer.Argument(help="The picture to judge, or a folder of frame.0000.exr and so on.")],
-    b: Annotated[Path, typer.Argument(help="Its reference, or a folder; in it reference.* count before frame.*.")],
+    a: Annotated[
+        Path, typer.Argument(metavar="A", help="The picture to judge, or a folder of frame.0000.exr and so on.")
+    ],
+    b: Annotated[
+        Path, typer.Argument(metavar="B", help="Its reference, or a folder; in it reference.* count before frame.*.")
+    ],
     min_psnr: Annotated[float | None, typer.Option(metavar="DB", help="Least PSNR of any frame.")] = None,
     min_ssim: Annotated[float | None, typer.Option(metavar="0..1", help="Least SSIM of any frame.")] = None,
     max_relmse: Annotated[float | None, typer.Option(metavar="ERROR", help="Greatest relMSE of any frame.")] = None,
     exposure: Exposure = 0.0,
 ) -> None:
-    r"""Compare EXR pictures (R, G, B) with their references.
+    """Compare EXR pictures (R, G, B) with their references.
 
     PSNR and SSIM are taken as shown (exposed, clipped to 0..1, sRGB), relMSE on linear HDR. Frames of two folders are
     paired by number; every reference needs its picture. Exit code 1 where a frame misses a threshold.

@@ -18,13 +18,14 @@ from svgf_cl.metrics import Metrics, require_ssim
 
 def demo(
     output: Output = Path("out/demo"),
-    frames: Annotated[int, typer.Option(min=1, help="Number of frames.")] = 24,
+    frames: Annotated[int, typer.Option(metavar="N", min=1, help="Number of frames.")] = 24,
     size: Size = "640x360",
     reference_spp: Annotated[
-        int, typer.Option(min=1, metavar="SPP", help="Samples per pixel of the references; most of the time goes here.")
+        int,
+        typer.Option(min=1, metavar="SPP", help="Samples per pixel of the references; most of the time goes here."),
     ] = 256,
 ) -> None:
-    r"""Render the built-in scene, denoise it and show what was gained.
+    """Render the built-in scene, denoise it and show what was gained.
 
     Renders a moving camera at 1 sample per pixel, denoises each frame as it comes, renders references of a few
     frames, and writes the sequences (EXR), stills side by side (PNG) and an animated preview (WebP).

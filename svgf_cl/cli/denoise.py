@@ -21,13 +21,16 @@ from svgf_cl.settings import Settings
 
 
 def denoise(
-    frames: Annotated[list[Path], typer.Argument(help="EXR files in order, or folders of frame.0000.exr and so on.")],
+    frames: Annotated[
+        list[Path],
+        typer.Argument(metavar="FRAMES", help="EXR files in order, or folders of frame.0000.exr and so on."),
+    ],
     output: Output,
     set_: SettingTexts = [],  # noqa: B006  # never changed; typer wants the default spelled here
     png: Annotated[bool, typer.Option("--png", help="Also write every picture tone-mapped as PNG.")] = False,
     exposure: Exposure = 0.0,
 ) -> None:
-    r"""Denoise a sequence of EXR frames.
+    """Denoise a sequence of EXR frames.
 
     Writes one EXR (R, G, B; linear HDR) a frame under the frame's own name. The channels read are those that
     `svgf-cl render` writes: R G B, normal.X Y Z, depth.Z, motion.X Y [Z], and where there are any albedo.R G B, id,

@@ -9,7 +9,7 @@ from svgf_cl.devices import list_devices
 
 
 def devices() -> None:
-    r"""List every OpenCL device and whether it really works.
+    """List every OpenCL device and whether it really works.
 
     A device works if it builds and runs a small kernel; if not, the reason is shown. The default, marked *, is what
     the other commands use; PYOPENCL_CTX picks another by its name in the first column.

@@ -23,21 +23,23 @@ SKY_HELP = "Light from everywhere outside the scene: linear radiance, for exampl
 
 
 def render(
-    scene: Annotated[str, typer.Argument(help="A glTF, GLB or OBJ file, or the name of a built-in scene: cornell.")],
+    scene: Annotated[
+        str, typer.Argument(metavar="SCENE", help="A glTF, GLB or OBJ file, or the name of a built-in scene: cornell.")
+    ],
     output: Output,
-    frames: Annotated[int, typer.Option(min=1, help="Number of frames.")] = 24,
-    spp: Annotated[int, typer.Option(min=1, help="Samples per pixel of a frame.")] = 1,
+    frames: Annotated[int, typer.Option(metavar="N", min=1, help="Number of frames.")] = 24,
+    spp: Annotated[int, typer.Option(metavar="N", min=1, help="Samples per pixel of a frame.")] = 1,
     size: Size = "640x360",
     camera: Annotated[list[str], typer.Option(metavar="TEXT", help=CAMERA_HELP)] = [],  # noqa: B006
     sky: Annotated[str | None, typer.Option(metavar="R,G,B", help=SKY_HELP)] = None,
     jitter: Annotated[bool, typer.Option(help="Move the rays within the pixel, by a new offset each frame.")] = True,
-    seed: Annotated[int, typer.Option(min=0, help="Another seed gives other noise.")] = 0,
-    bounces: Annotated[int, typer.Option(min=0, help="Surfaces a path visits after the first.")] = 1,
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Another seed gives other noise.")] = 0,
+    bounces: Annotated[int, typer.Option(metavar="N", min=0, help="Surfaces a path visits after the first.")] = 1,
     reference_spp: Annotated[
         int, typer.Option(min=0, metavar="SPP", help="Also write a reference of each frame; 0: none.")
     ] = 0,
 ) -> None:
-    r"""Render a sequence with the built-in path tracer.
+    """Render a sequence with the built-in path tracer.
 
     Writes frame.0000.exr and so on: noisy radiance and all that the denoiser wants to know, as named channels; with
     --reference-spp also reference.0000.exr and so on.
