@@ -1,0 +1,34 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from tracer.geometry import Instance
+from tracer.materials import Material
+
+Quad = Callable[..., Instance]
+
+
+@pytest.fixture(scope="session")
+def quad() -> Quad:
+    """Maker of rectangles; the front is the side towards right x up."""
+
+    def make(
+        corner: tuple[float, float, float],
+        right: tuple[float, float, float],
+        up: tuple[float, float, float],
+        material: Material | None = None,
+    ) -> Instance:
+        st = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]], float)
+        corners = np.array(corner) + st[..., :1] * np.array(right) + st[..., 1:] * np.array(up)
+        return Instance(corners, material or Material(), uv=st)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def floor(quad: Quad) -> Callable[[Material], Instance]:
+    """Maker of a large square at y = 0, face up."""
+    return lambda material: quad((-50, 0, 50), (100, 0, 0), (0, 0, -100), material)
