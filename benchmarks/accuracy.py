@@ -1,8 +1,7 @@
-"""Writes docs/accuracy.md: every kernel against the float64 oracle, on every OpenCL device here that works: `accuracy.py [FILE]`."""
+"""Writes docs/accuracy.md: every kernel against the float64 oracle, on every OpenCL device here that works."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -22,12 +21,14 @@ INTRODUCTION = f"""# Accuracy
 Made by `make docs` (`python benchmarks/accuracy.py`); do not edit.
 
 Every kernel is given its actual float32 input and held against the same function of `svgf_cl/reference.py` in float64.
-An error is relative: `|got - expected| / (|expected| + {SCALE_SHARE:g} * mean |expected|)`. Where rounding tips a decision
-(a tap just accepted or just refused) a pixel may differ by more than {DECISION:g}; such pixels are counted apart.
-"Pipeline" is the whole filter over a sequence, errors building up through the history, relative to the picture's mean.
+An error is relative: `|got - expected| / (|expected| + {SCALE_SHARE:g} * mean |expected|)`. Where rounding tips a
+decision (a tap just accepted or just refused) a pixel may differ by more than {DECISION:g}; such pixels are counted
+apart. "Pipeline" is the whole filter over a sequence, errors building up through the history, relative to the
+picture's mean.
 
-"Traced": {FRAMES} frames of the built-in Cornell box, {SHAPE[1]}x{SHAPE[0]}, 1 sample, moving camera, direct and indirect apart,
-TAA on. "Random": {FRAMES} frames of unrelated numbers in every field, with misses, ids and motion of several pixels.
+"Traced": {FRAMES} frames of the built-in Cornell box, {SHAPE[1]}x{SHAPE[0]}, 1 sample, moving camera, direct and
+indirect apart, TAA on. "Random": {FRAMES} frames of unrelated numbers in every field, with misses, ids and motion of
+several pixels.
 
 Why not zero: float32 rounds at 6e-8. `cosine^128` multiplies that by up to 128, an exponent of up to 87 by as much
 again, and the polynomial exponential adds 3e-7; the variance sums squares of differences.
@@ -86,7 +87,7 @@ def section(report: devices.DeviceReport) -> str:
 
 def main() -> None:
     """Write the page."""
-    target = Path(sys.argv[1] if len(sys.argv) > 1 else "docs/accuracy.md")
+    target = Path("docs/accuracy.md")
     working = [report for report in devices.list_devices() if report.works]
     page = "\n".join([INTRODUCTION, *(section(report) for report in working)])
     with written_whole(target) as aside:

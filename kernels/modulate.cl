@@ -10,6 +10,7 @@
 
 #define MIN_ALBEDO 0.001f
 #define MAX_ILLUMINATION 1e15f  // its square can still be summed in float32
+#define MAX_RADIANCE 1e38f      // finite, whatever the albedo
 
 inline floatv known_albedo(__global const float *albedo, intv i) {
     const floatv a = gather(albedo, i);
@@ -121,10 +122,11 @@ __kernel void modulate(const int4 size,
 #if HAS_EMISSION
         c += known_emission(glow, k);
 #endif
+        c = min(c, (floatv)(MAX_RADIANCE));
 #if TAA
         store(where(x + LANES < size.x, c, (floatv)(0.0f)), out + k * size.w + here);
 #else
-        scatter(min(c, (floatv)(FLT_MAX)), size, x, y, k, out);
+        scatter(c, size, x, y, k, out);
 #endif
     }
 }

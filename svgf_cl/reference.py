@@ -31,6 +31,7 @@ from svgf_cl.reference_taps import (
 )
 from svgf_cl.settings import Settings
 
+RADIANCE_MAX = 1e38
 FLOAT32_MAX = float(np.finfo(np.float32).max)
 ALBEDO_FLOOR = 0.001
 ILLUMINATION_MAX = 1e15
@@ -277,7 +278,7 @@ def modulate(illumination: Array, guides: Guides) -> Array:
     """Section 5: out = sum over signals of c * albedo' + emission', (H, W, 3)."""
     # Emission is added once, whatever the number of signals.
     image: Array = illumination.sum(axis=0) * guides.albedo + guides.emission
-    return np.minimum(image, FLOAT32_MAX)
+    return np.minimum(image, RADIANCE_MAX)
 
 
 def taa(image: Array, motion: Array, history: Array | None, settings: Settings) -> tuple[Array, Array]:

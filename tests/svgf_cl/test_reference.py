@@ -91,7 +91,7 @@ class TestDemodulate:
 
     def test_light_on_black_survives(self) -> None:
         illumination, guides = demodulate(wall(color=0.25, albedo=0.0))
-        assert_allclose(illumination, 25, rtol=1e-6)
+        assert_allclose(illumination, 250, rtol=1e-6)
         assert_allclose(modulate(illumination, guides), 0.25)
 
     def test_one_infinite_channel_blackens_the_triple(self) -> None:

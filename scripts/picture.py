@@ -1,0 +1,31 @@
+"""Writes docs/demo.png, the README's picture, from what `svgf-cl demo` left in out/demo: left noisy, right denoised."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from svgf_cl.display import to_bytes
+from svgf_cl.files import written_whole
+from svgf_cl.sequence import frame_path, read_picture
+
+DEMO = Path("out/demo")
+TARGET = Path("docs/demo.png")
+FRAME = 20
+NOISY_SHARE = 0.42
+
+
+def main() -> None:
+    """Compose and write the picture, in 256 colours: noise does not compress."""
+    noisy, denoised = (to_bytes(read_picture(frame_path(DEMO / kind, FRAME))) for kind in ("noisy", "denoised"))
+    seam = round(NOISY_SHARE * noisy.shape[1])
+    picture = np.hstack([noisy[:, :seam], np.full_like(noisy[:, :2], 255), denoised[:, seam + 2 :]])
+    with written_whole(TARGET) as aside:
+        Image.fromarray(picture).quantize(256, dither=Image.Dither.NONE).save(aside, format="PNG", optimize=True)
+    print(f"{TARGET}: {TARGET.stat().st_size / 1000:.0f} kB")
+
+
+if __name__ == "__main__":
+    main()
