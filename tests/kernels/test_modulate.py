@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
+from svgf_cl import Frame
 from svgf_cl.planes import HALO, Layout
 from tests.denoising import feed
-from tests.frames import FULL, SHAPE, noise, only, wall
+from tests.frames import FULL, SHAPE, SPLIT, noise, only, wall
 from tests.oracle import assert_follows_oracle, every_case
 
 HUGE = np.finfo(np.float32).max
@@ -21,7 +22,8 @@ def test_follows_the_oracle(case: str) -> None:
     assert_follows_oracle(case, "normal", "depth", "demodulated", "modulated")
 
 
-def full_wall(**given: Any) -> Any:
+def full_wall(**given: Any) -> Frame:
+    """A wall with every field of one signal."""
     return only(wall(**({"albedo": 1.0, "emission": 0.0, "id": 1} | given)), FULL)
 
 
@@ -72,7 +74,8 @@ def test_miss_has_no_surface(changes: dict[str, Any]) -> None:
 def test_nothing_overflows(taa: bool) -> None:
     y, x = np.indices(SHAPE)
     albedo = np.where((x + y) % 2, HUGE, 1)[..., None]
-    out, den = feed(full_wall(color=10.0, albedo=albedo, emission=0.0), taa=taa)
+    bright = wall(direct=10.0, indirect=10.0, albedo=albedo, emission=HUGE, id=1)
+    out, den = feed(only(bright, SPLIT), taa=taa)
     assert np.isfinite(out).all()
     assert all(np.isfinite(den.stage(name)).all() for name in den.stages)
 

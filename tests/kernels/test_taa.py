@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from svgf_cl import Frame
 from tests.denoising import feed
-from tests.frames import FULL, SHAPE, noise, only, wall
+from tests.frames import SHAPE, SPLIT, noise, only, wall
 from tests.oracle import antialiased_cases, assert_follows_oracle
 
 LUMA = np.array((0.25, 0.5, 0.25))
@@ -23,7 +23,7 @@ def test_follows_the_oracle(case: str) -> None:
 
 def glowing(picture: Any, **given: Any) -> Frame:
     """A picture that no other stage changes: emission alone."""
-    return only(wall(color=picture, emission=picture, albedo=1.0, id=1, **given), FULL)
+    return only(wall(direct=0.0, indirect=0.0, emission=picture, albedo=1.0, id=1, **given), SPLIT)
 
 
 def test_first_frame_passes_through() -> None:
@@ -69,7 +69,9 @@ def tone(picture: np.ndarray) -> np.ndarray:
     return (picture @ LUMA) / (1 + picture @ LUMA)
 
 
-@pytest.mark.parametrize("motion", [(100.0, 0.0, 0.0), (np.nan, 0.0, 0.0), (0.0, -np.inf, 0.0), (3e38, 0.0, 0.0)])
+@pytest.mark.parametrize(
+    "motion", [(100.0, 0.0, 0.0), (np.nan, 0.0, 0.0), (0.0, np.nan, 0.0), (0.0, -np.inf, 0.0), (3e38, 0.0, 0.0)]
+)
 def test_no_history_from_outside_the_image(motion: tuple[float, float, float]) -> None:
     out, _ = feed(glowing(noise()), glowing(noise(1), motion=motion), taa=True)
     assert_allclose(out, noise(1), rtol=1e-5, atol=1e-6)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pyopencl as cl
 import pytest
-from hypothesis import given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
@@ -39,9 +39,9 @@ class TestOracle:
         ("frames", "chosen"),
         [
             (bumpy_sequence(PLAIN, count=10), Settings()),
-            (bumpy_sequence(FULL, count=10), TAA),
-            (bumpy_sequence(SPLIT, count=10), Settings(alpha_color=0, alpha_moments=0)),
-            (traced_sequence(FULL, count=8), TAA),
+            (bumpy_sequence(FULL, count=10), Settings(alpha_color=0, alpha_moments=0)),
+            (bumpy_sequence(SPLIT, count=10), TAA),
+            (traced_sequence(FULL, count=8), Settings()),
             (traced_sequence(SPLIT, count=8), TAA),
         ],
         ids=["plain", "full", "split", "traced", "traced split"],
@@ -51,10 +51,11 @@ class TestOracle:
         for frame in frames:
             assert_alike(den.denoise(frame), oracle.denoise(frame))
 
-    @settings(max_examples=40, deadline=None, derandomize=True)
+    # Shrinking takes minutes and finds little: the examples are small as they are.
+    @settings(max_examples=40, deadline=None, derandomize=True, phases=[Phase.generate])
     @given(
         shape=st.tuples(st.integers(1, 24), st.integers(1, 40)),
-        variant=st.sampled_from(((PLAIN, False), (FULL, True), (SPLIT, True))),
+        variant=st.sampled_from(((PLAIN, False), (FULL, False), (SPLIT, False), (SPLIT, True))),
         chosen=st.fixed_dictionaries(
             {
                 "iterations": st.integers(*RANGES["iterations"]),
@@ -98,9 +99,8 @@ def test_same_input_gives_the_same_bits() -> None:
 @pytest.mark.parametrize("chosen", [Settings(), TAA], ids=["plain", "taa"])
 def test_any_size_keeps_a_constant_image(shape: Shape, chosen: Settings) -> None:
     den = Denoiser(shape, settings=chosen)
-    fields = FULL if chosen.taa else PLAIN
     for _ in range(3):
-        out = den.denoise(only(wall(shape, emission=0.0, albedo=0.5, id=1), fields))
+        out = den.denoise(only(wall(shape, direct=0.3, indirect=0.1, emission=0.1, albedo=0.5, id=1), SPLIT))
     assert_allclose(out, 0.5, rtol=1e-5)
 
 
@@ -147,30 +147,29 @@ def spoiled(frame: Frame, name: str, value: float, part: Any) -> Frame:
     return replace(frame, **{name: field})
 
 
+GOOD = replace(bumpy_sequence(SPLIT, count=1, shape=TINY)[0], motion=np.zeros((*TINY, 3), np.float32))
+# Forgets the square of 1e15 within 60 frames.
+BRISK = {"alpha_color": 0.8, "alpha_moments": 0.8, "alpha_taa": 0.8, "taa": True}
+
+
+@pytest.fixture(scope="module")
+def steady() -> np.ndarray:
+    """What a sequence of `GOOD` frames comes to."""
+    return feed(*[GOOD] * 60, **BRISK)[0]
+
+
 @pytest.mark.parametrize("name", [name for name in CHANNELS if name not in ("id", "color")])
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1e30, -1e30, 3e38], ids=str)
 @every_part
 class TestFaultyInput:
-    GOOD = replace(bumpy_sequence(SPLIT, count=1, shape=TINY)[0], motion=np.zeros((*TINY, 3), np.float32))
-    # Fast enough to forget the squares of 1e15 within the test.
-    BRISK = Settings(alpha_color=0.8, alpha_moments=0.8, alpha_taa=0.8, taa=True)
-    FRAMES = 60
-
-    @pytest.fixture(scope="class")
-    def expected(self) -> np.ndarray:
-        den = Denoiser(TINY, settings=self.BRISK)
-        return [den.denoise(self.GOOD) for _ in range(self.FRAMES)][-1]
-
     def test_leaves_all_stages_finite(self, name: str, value: float, part: Any) -> None:
-        out, den = feed(self.GOOD, spoiled(self.GOOD, name, value, part), self.GOOD, taa=True)
+        out, den = feed(GOOD, spoiled(GOOD, name, value, part), GOOD, taa=True)
         assert np.isfinite(out).all()
         assert all(np.isfinite(den.stage(stage)).all() for stage in den.stages)
 
-    def test_is_forgotten(self, name: str, value: float, part: Any, expected: np.ndarray) -> None:
-        den = Denoiser(TINY, settings=self.BRISK)
-        den.denoise(spoiled(self.GOOD, name, value, part))
-        out = [den.denoise(self.GOOD) for _ in range(self.FRAMES)][-1]
-        assert_allclose(out, expected, rtol=1e-4, atol=1e-6)
+    def test_is_forgotten(self, name: str, value: float, part: Any, steady: np.ndarray) -> None:
+        out, _ = feed(spoiled(GOOD, name, value, part), *[GOOD] * 60, **BRISK)
+        assert_allclose(out, steady, rtol=1e-4, atol=1e-6)
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
@@ -190,7 +189,7 @@ def test_firefly_is_bounded() -> None:
 class TestStages:
     @pytest.mark.parametrize(("fields", "signals"), [(FULL, 1), (SPLIT, 2)])
     def test_shapes(self, fields: tuple[str, ...], signals: int) -> None:
-        _, den = feed(*bumpy_sequence(fields, count=1), taa=True)
+        _, den = feed(*bumpy_sequence(fields, count=1), taa=signals == 2)
         pictures = {"normal", "modulated", "antialiased"}
         shared = {"depth", "history_length"}
         for name in den.stages:
@@ -252,7 +251,7 @@ class TestMemory:
 
 class TestProfile:
     def test_times_every_pass_of_the_table(self) -> None:
-        frame = bumpy_sequence(FULL, count=1)[0]
+        frame = bumpy_sequence(SPLIT, count=1)[0]
         den = Denoiser(SHAPE, settings=TAA)
         den.denoise(frame)
         times = den.profile()
