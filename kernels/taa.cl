@@ -2,7 +2,7 @@
 //
 //   t = YCoCg(out) / (1 + Y(out)),  h = clamp(history at p + motion, min 3x3 t, max 3x3 t),  t := h + alpha (t - h)
 //
-// in   motion, modulated colour, history (YCoCg, tone mapped)
+// in   motion, guide: depth, modulated colour, history (YCoCg, tone mapped)
 // out  next history; out: the user's (H, W, 3) array, linear HDR
 // Schied et al. 2017, section 5; Karis, High-Quality Temporal Supersampling, 2014. Tone mapping comes first so that one
 // bright sample cannot outweigh its neighbours. It goes by Y, not by luminance: the clamp bounds Y, so the inverse cannot
@@ -24,14 +24,43 @@ inline Tone tone_map(const int4 size, int i, __global const float *color) {
     return t;
 }
 
+// Weights of the four taps around a fraction f; the interpolation keeps edges sharp that a bilinear one would soften
+// a little more in every frame.
+inline void catmull_rom(floatv f, floatv *w) {
+    w[0] = f * (-0.5f + f * (1.0f - 0.5f * f));
+    w[1] = 1.0f + f * f * (-2.5f + 1.5f * f);
+    w[2] = f * (0.5f + f * (2.0f - 1.5f * f));
+    w[3] = f * f * (-0.5f + 0.5f * f);
+}
+
+// Element of the motion to follow: that of the nearest surface in the 3x3 neighbourhood. A pixel beside an edge moves with
+// the edge; with its own motion it would fetch, and keep, what the edge covered a frame ago.
+inline intv foremost_motion(const int4 size, int x, int y, __global const float *depth) {
+    const int here = at(size, x, y);
+    floatv nearest = load(depth + here);
+    nearest = where(nearest > 0.0f, nearest, (floatv)(INFINITY));
+    intv column = x + LANES, line = (intv)(y);
+    for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+            const floatv z = load(depth + here + dy * size.z + dx);  // 0 outside the image
+            const intv nearer = (z > 0.0f) & (z < nearest);
+            nearest = where(nearer, z, nearest);
+            column = select(column, x + dx + LANES, nearer);
+            line = select(line, (intv)(y + dy), nearer);
+        }
+    }
+    return (min(column, size.x - 1) + line * size.x) * MOTION;
+}
+
 __kernel void taa(const int4 size, const float alpha_taa, __global const float *restrict motion,
-                  __global const float *restrict color, __global const float *restrict history,
-                  __global float *restrict next_history, __global float *restrict out) {
+                  __global const float *restrict guide, __global const float *restrict color,
+                  __global const float *restrict history, __global float *restrict next_history,
+                  __global float *restrict out) {
     const int x = first_column(), y = row();
     if (x >= size.x) return;
     const int here = at(size, x, y);
-    const intv i = interleaved(size, x, y, MOTION);
-    const floatv mx = gather(motion, i), my = gather(motion, i + 1);
+    const intv m = foremost_motion(size, x, y, guide + DEPTH * size.w);
+    const floatv mx = gather(motion, m), my = gather(motion, m + 1);
     const floatv px = to_float(x + LANES) + mx, py = to_float((intv)(y)) + my;
     const float right = (float)size.x - 0.5f, bottom = (float)size.y - 0.5f;
     const intv seen = (px >= -0.5f) & (px < right) & (py >= -0.5f) & (py < bottom);  // false for NaN
@@ -51,15 +80,18 @@ __kernel void taa(const int4 size, const float alpha_taa, __global const float *
     }
 
     const floatv sx = where(seen, mx, (floatv)(0.0f)), sy = where(seen, my, (floatv)(0.0f));
-    const floatv fx = sx - floor(sx), fy = sy - floor(sy);
-    const intv left = x + LANES + to_int(floor(sx)), top = y + to_int(floor(sy));
+    const intv left = x - 1 + LANES + to_int(floor(sx)), top = y - 1 + to_int(floor(sy));
+    floatv wx[4], wy[4];
+    catmull_rom(sx - floor(sx), wx);
+    catmull_rom(sy - floor(sy), wy);
     Tone h;
     UNROLLED_FOR(k, 3) h.channel[k] = (floatv)(0.0f);
-    UNROLLED_FOR(t, 4) {
-        const floatv w = (t & 1 ? fx : 1.0f - fx) * (t & 2 ? fy : 1.0f - fy);
-        const intv tx = clamp(left + (t & 1), 0, size.x - 1), ty = clamp(top + (t >> 1), 0, size.y - 1);
-        const Places tap = places(at_lanes(size, tx, ty));
-        UNROLLED_FOR(k, 3) h.channel[k] += w * fetch(history + k * size.w, tap);
+    UNROLLED_FOR(j, 4) {
+        UNROLLED_FOR(i, 4) {
+            const intv tx = clamp(left + i, 0, size.x - 1), ty = clamp(top + j, 0, size.y - 1);
+            const Places tap = places(at_lanes(size, tx, ty));
+            UNROLLED_FOR(k, 3) h.channel[k] += wx[i] * wy[j] * fetch(history + k * size.w, tap);
+        }
     }
 
     // Before the first frame the history is NaN.

@@ -135,7 +135,7 @@ def pipeline(inputs: Inputs, settings: Settings) -> tuple[Pass, ...]:
                 "taa",
                 "taa",
                 "taa",
-                reads=("motion", "modulated", "previous antialiased"),
+                reads=("motion", "guide", "modulated", "previous antialiased"),
                 writes=("antialiased", OUT),
                 settings=("alpha_taa",),
             )

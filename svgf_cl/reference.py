@@ -18,6 +18,7 @@ from svgf_cl.reference_taps import (
     Mask,
     Offset,
     bilinear_taps,
+    catmull_rom_taps,
     depth_gradient,
     dot,
     finite,
@@ -281,13 +282,25 @@ def modulate(illumination: Array, guides: Guides) -> Array:
     return np.minimum(image, RADIANCE_MAX)
 
 
-def taa(image: Array, motion: Array, history: Array | None, settings: Settings) -> tuple[Array, Array]:
+def foremost_motion(guides: Guides) -> Array:
+    """Section 6: motion (H, W, 3) of the nearest hit among each pixel and its eight neighbours; its own if none is."""
+    nearest = np.where(guides.hit, guides.depth, np.inf)
+    motion = guides.motion
+    for offset in square(1):
+        y, x, inside = shifted(offset, guides.depth.shape)
+        nearer = inside & guides.hit[y, x] & (guides.depth[y, x] < nearest)
+        nearest = np.where(nearer, guides.depth[y, x], nearest)
+        motion = np.where(nearer[..., None], guides.motion[y, x], motion)
+    return motion
+
+
+def taa(image: Array, guides: Guides, history: Array | None, settings: Settings) -> tuple[Array, Array]:
     """Section 6: temporal antialiasing with a neighbourhood-clamped history.
 
     Parameters
     ----------
     image : (H, W, 3), linear HDR.
-    motion : (H, W, 3), of `Guides`.
+    guides : Guides
     history : (H, W, 3), tone-mapped YCoCg, or None on the first frame.
 
     Returns
@@ -295,13 +308,13 @@ def taa(image: Array, motion: Array, history: Array | None, settings: Settings) 
     image : (H, W, 3), linear HDR.
     history : (H, W, 3), for the next frame.
     """
-    shape = motion.shape[:2]
+    shape = guides.depth.shape
     current = image @ YCOCG_OF_RGB.T
     current = current / (1 + current[..., :1])
     result = current
     if history is not None:
-        position = reprojected(motion)
-        x, y, weight = bilinear_taps(position)
+        position = reprojected(foremost_motion(guides))
+        x, y, weight = catmull_rom_taps(position)
         rows, columns, _ = locate(x, y, shape)
         past = np.einsum("thw,thwc->hwc", weight, history[rows, columns])
         around = np.stack([current[shifted(offset, shape)[:2]] for offset in square(1)])
@@ -365,6 +378,6 @@ class Reference:
 
         image = stages["modulated"] = modulate(illumination, guides)
         if settings.taa:
-            image, self.antialiased = taa(image, guides.motion, self.antialiased, settings)
+            image, self.antialiased = taa(image, guides, self.antialiased, settings)
             stages.update(taa=image, antialiased=self.antialiased)
         return image

@@ -70,6 +70,22 @@ def bilinear_taps(position: Array) -> tuple[Indices, Indices, Array]:
     return x.astype(np.int64), y.astype(np.int64), weight
 
 
+def catmull_rom_taps(position: Array) -> tuple[Indices, Indices, Array]:
+    """Find the 4x4 footprint of `position` (H, W, 2): x, y and Catmull-Rom weight of its taps, each (16, H, W)."""
+    corner = np.floor(position).astype(np.int64)
+    offsets = [(dx, dy) for dy in range(-1, 3) for dx in range(-1, 3)]
+    x, y = np.moveaxis(np.stack([corner + offset for offset in offsets]), -1, 0)
+    return x, y, catmull_rom(position[..., 0] - x) * catmull_rom(position[..., 1] - y)
+
+
+def catmull_rom(distance: Array) -> Array:
+    """Catmull and Rom's cardinal spline with tension 1/2 at a distance of up to 2, as in Keys 1981 with a = -1/2."""
+    d = np.abs(distance)
+    near = 1.5 * d**3 - 2.5 * d**2 + 1
+    far = -0.5 * d**3 + 2.5 * d**2 - 4 * d + 2
+    return np.where(d <= 1, near, np.where(d <= 2, far, 0))
+
+
 def nearest_taps(position: Array) -> tuple[Indices, Indices, Array]:
     """Find the 3x3 taps around the pixel nearest to `position` (H, W, 2), with equal weights: each (9, H, W)."""
     centre = np.floor(position + 0.5).astype(np.int64)

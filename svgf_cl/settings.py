@@ -52,7 +52,8 @@ class Settings:
     taa : bool
         Temporal antialiasing after the filter; off, because a renderer often has its own.
     alpha_taa : float, 0..1
-        Share of the new frame in the antialiased picture. 0.1: about ten jittered samples make an edge.
+        Share of the new frame in the antialiased picture. 0.2: on the moving demo 0.8 dB better than the usual 0.1, for
+        each resampling of the history softens it; less suits a still camera.
     """
 
     iterations: int = 5
@@ -65,7 +66,7 @@ class Settings:
     depth_threshold: float = 0.02
     normal_threshold: float = 0.9
     taa: bool = False
-    alpha_taa: float = 0.1
+    alpha_taa: float = 0.2
 
     def __post_init__(self) -> None:
         for field in fields(self):

@@ -20,13 +20,23 @@ from svgf_cl.reference import (
     atrous,
     consistent,
     demodulate,
+    foremost_motion,
     modulate,
     surface_weight,
     taa,
     temporal,
     variance,
 )
-from svgf_cl.reference_taps import Array, depth_gradient, luminance, shifted, smoothed
+from svgf_cl.reference_taps import (
+    Array,
+    catmull_rom_taps,
+    depth_gradient,
+    locate,
+    luminance,
+    reprojected,
+    shifted,
+    smoothed,
+)
 from svgf_cl.settings import Settings
 
 SHAPE = (12, 14)
@@ -345,7 +355,7 @@ class TestAtrous:
 
 
 class TestTaa:
-    MOTION = np.zeros((*SHAPE, 3))
+    STILL = guides_of(wall())
 
     def test_static_constant_is_untouched(self) -> None:
         reference = Reference(SHAPE, Settings(taa=True))
@@ -355,25 +365,46 @@ class TestTaa:
 
     def test_blends_within_the_neighbourhood(self, rng: np.random.Generator) -> None:
         before, now = rng.random((2, *SHAPE, 3))
-        _, history = taa(before, self.MOTION, None, Settings())
-        _, current = taa(now, self.MOTION, None, Settings())
-        _, result = taa(now, self.MOTION, history, Settings(alpha_taa=0.25))
+        _, history = taa(before, self.STILL, None, Settings())
+        _, current = taa(now, self.STILL, None, Settings())
+        _, result = taa(now, self.STILL, history, Settings(alpha_taa=0.25))
         patch = current[3:6, 4:7].reshape(9, 3)
         clamped = np.clip(history[4, 5], patch.min(axis=0), patch.max(axis=0))
         assert_allclose(result[4, 5], 0.75 * clamped + 0.25 * current[4, 5])
 
     def test_old_light_is_clamped_away(self) -> None:
-        _, history = taa(np.full((*SHAPE, 3), 100.0), self.MOTION, None, Settings())
-        assert_allclose(taa(np.full((*SHAPE, 3), 0.5), self.MOTION, history, Settings())[0], 0.5)
+        _, history = taa(np.full((*SHAPE, 3), 100.0), self.STILL, None, Settings())
+        assert_allclose(taa(np.full((*SHAPE, 3), 0.5), self.STILL, history, Settings())[0], 0.5)
 
     @pytest.mark.parametrize(("shift", "known"), [(-0.5, True), (-0.51, False), (0.49, True), (0.5, False)])
     def test_history_ends_half_a_pixel_outside(self, shift: float, known: bool) -> None:
         edge = 0 if shift < 0 else -1
         image = np.ones((*SHAPE, 3))
         image[:, edge] = 0.5
-        _, history = taa(np.ones((*SHAPE, 3)), self.MOTION, None, Settings())
-        out, _ = taa(image, self.MOTION + np.array((shift, 0, 0)), history, Settings())
+        _, history = taa(np.ones((*SHAPE, 3)), self.STILL, None, Settings())
+        out, _ = taa(
+            image, replace(self.STILL, motion=self.STILL.motion + np.array((shift, 0, 0))), history, Settings()
+        )
         assert (out[0, edge] > 0.6).all() == known
+
+    def test_a_ramp_is_resampled_exactly(self) -> None:
+        ramp = np.linspace(0.2, 0.6, SHAPE[1])[:, None] * np.ones((*SHAPE, 1))
+        history = np.concatenate([ramp, 0 * ramp, 0 * ramp], axis=-1)
+        x, y, weight = catmull_rom_taps(reprojected(np.full((*SHAPE, 3), 0.3)))
+        rows, columns, _ = locate(x, y, SHAPE)
+        moved = np.einsum("thw,thwc->hwc", weight, history[rows, columns])
+        assert_allclose(weight.sum(axis=0), 1)
+        inner = np.s_[:, 1:-3, 0]
+        assert_allclose(moved[inner], history[inner] + 0.3 * 0.4 / (SHAPE[1] - 1))
+
+    def test_a_pixel_beside_an_edge_moves_with_the_edge(self) -> None:
+        depth, motion = np.full(SHAPE, 5.0), np.zeros((*SHAPE, 3))
+        depth[:, 4:], motion[:, 4:, 0] = 2.0, 1.0
+        depth[0], motion[0] = 0.0, 7.0
+        motion = foremost_motion(replace(self.STILL, depth=depth, motion=motion))
+        assert_array_equal(motion[2:, :3, 0], 0)
+        assert_array_equal(motion[2:, 3:, 0], 1)
+        assert_array_equal(motion[0, :3, 0], 0)
 
 
 class TestPipeline:
