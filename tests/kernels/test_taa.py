@@ -77,6 +77,10 @@ def test_no_history_from_outside_the_image(motion: tuple[float, float, float]) -
     assert_allclose(out, noise(1), rtol=1e-5, atol=1e-6)
 
 
+def test_bright_light_survives_tone_mapping() -> None:
+    assert_allclose(feed(glowing(1e4))[0], feed(glowing(1e4), taa=True)[0], rtol=5e-3)
+
+
 @pytest.mark.parametrize("brightness", [1e4, 1e30, 3e38])
 def test_firefly_goes_no_further_than_its_pixel(brightness: float) -> None:
     picture = np.full((*SHAPE, 3), 0.5)
