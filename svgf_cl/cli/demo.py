@@ -55,21 +55,16 @@ def demo(
     )
 
 
-def show_gain(*stages: Mapping[int, Metrics]) -> None:
-    """Print how far noisy, filtered and antialiased pictures are from the reference, one row a frame."""
+def show_gain(noisy: Mapping[int, Metrics], svgf: Mapping[int, Metrics], antialiased: Mapping[int, Metrics]) -> None:
+    """Print how far the pictures of each stage are from the reference, one row a frame."""
     rows = []
-    for number in stages[0]:
-        psnr = [stage[number].psnr for stage in stages]
-        rows.append(
-            (
-                str(number),
-                " -> ".join(f"{value:.2f}" for value in psnr),
-                " -> ".join(f"{value - psnr[0]:+.2f}" for value in psnr[1:]),
-                " -> ".join(f"{stage[number].ssim:.3f}" for stage in stages),
-                " -> ".join(f"{stage[number].relmse:.4f}" for stage in stages),
-            )
-        )
-    show("against the reference: noisy -> SVGF -> with TAA", ("frame", "PSNR dB", "gain dB", "SSIM", "relMSE"), rows)
+    for number, before in noisy.items():
+        stages = (before, svgf[number], antialiased[number])
+        psnr = [f"{stage.psnr:.2f}" for stage in stages]
+        ssim = [f"{stage.ssim:.3f}" for stage in stages]
+        rows.append((str(number), *psnr, f"{stages[-1].psnr - before.psnr:+.2f}", *ssim))
+    columns = ("frame", "noisy dB", "SVGF dB", "+TAA dB", "gain dB", "noisy SSIM", "SVGF SSIM", "+TAA SSIM")
+    show("against the reference", columns, rows)
 
 
 def show_files(folder: Path, names: Iterable[str]) -> None:
