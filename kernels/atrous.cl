@@ -84,7 +84,7 @@ __kernel void atrous(const int4 size, const int step, const float sigma_depth, c
     }
 
     const Gradient g = depth_gradient(depth, size.z, here);
-#pragma unroll
+    // Rows stay a loop: unrolled as well, a level is a tenth faster on PoCL, but takes 8 s to compile in place of 0.5 s.
     for (int dy = 0; dy <= 2; ++dy) {
 #pragma unroll
         for (int dx = -2; dx <= 2; ++dx) {

@@ -79,7 +79,8 @@ class Uploads:
         """The device buffer of field `name`; a numpy array may be changed by its owner as soon as this returns."""
         if isinstance(value, cl_array.Array):
             return self.device_buffer(name, value)
-        host = np.ascontiguousarray(value, np.uint32 if name == "id" else np.float32)
+        with np.errstate(over="ignore"):  # beyond float32 is infinite, and treated as such
+            host = np.ascontiguousarray(value, np.uint32 if name == "id" else np.float32)
         kept = self.keep(name, host.nbytes)
         cl.enqueue_copy(self._queue, kept, host, is_blocking=True)
         return kept

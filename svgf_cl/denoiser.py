@@ -59,7 +59,7 @@ class Denoiser:
     Raises
     ------
     SvgfError
-        If `shape` is no image, or no OpenCL device works (`DeviceError`).
+        If `shape` is no image, `queue` is not in order, or no OpenCL device works (`DeviceError`).
 
     Examples
     --------
@@ -76,8 +76,8 @@ class Denoiser:
         keep_stages: bool = False,
     ) -> None:
         self.shape = check_shape(shape)
-        self.settings = settings or Settings()
-        self.queue = queue or devices.default_queue()
+        self.settings = check_settings(settings)
+        self.queue = check_queue(queue)
         self._layout = Layout(*self.shape)
         self._vector_width = devices.vector_width(self.queue.device)
         self._keep_stages = keep_stages
@@ -109,12 +109,13 @@ class Denoiser:
             If a field is missing, of another shape or type, or on another context.
         """
         frame.check(self.shape)
-        plan = self._ready(Inputs.of(frame))
+        inputs = Inputs.of(frame)
         result = self._result(frame) if out is None else out
         check_out(result, (*self.shape, 3))
         on_host = isinstance(result, np.ndarray)
-        buffers = {name: self._uploads.buffer(name, getattr(frame, name)) for name in plan.inputs.fields}
+        buffers = {name: self._uploads.buffer(name, getattr(frame, name)) for name in inputs.fields}
         buffers[OUT] = self._uploads.keep(OUT, result.nbytes) if on_host else self._uploads.device_buffer(OUT, result)
+        plan = self._ready(inputs)
         if wait_for:
             cl.enqueue_barrier(self.queue, wait_for=list(wait_for))
         plan.planes.begin_frame()
@@ -200,6 +201,24 @@ class Denoiser:
         if all(isinstance(value, cl_array.Array) for value in frame.present().values()):
             return cl_array.empty(self.queue, shape, np.float32)
         return np.empty(shape, np.float32)
+
+
+def check_settings(settings: Settings | None) -> Settings:
+    """The defaults for None; `SvgfError` for anything that is not `Settings`."""
+    if settings is None:
+        return Settings()
+    if not isinstance(settings, Settings):
+        raise SvgfError(f"Denoiser: expected settings=Settings(...), got {settings!r}")
+    return settings
+
+
+def check_queue(queue: cl.CommandQueue | None) -> cl.CommandQueue:
+    """A queue on the default device for None; `SvgfError` for one that may run the passes out of order."""
+    if queue is None:
+        return devices.default_queue()
+    if queue.properties & cl.command_queue_properties.OUT_OF_ORDER_EXEC_MODE_ENABLE:
+        raise SvgfError("Denoiser: expected an in-order queue, got one with OUT_OF_ORDER_EXEC_MODE_ENABLE")
+    return queue
 
 
 def check_shape(shape: Shape) -> Shape:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from numbers import Real
+from numbers import Integral, Real
 
 from svgf_cl.errors import SettingsError
 
@@ -81,13 +81,13 @@ class Settings:
     @property
     def defines(self) -> dict[str, int]:
         """The kernels' macros; every other setting is an argument, so that tuning it compiles nothing."""
-        return {"LOG2_SIGMA_NORMAL": self.sigma_normal.bit_length() - 1, "TAA": int(self.taa)}
+        return {"LOG2_SIGMA_NORMAL": int(self.sigma_normal).bit_length() - 1, "TAA": int(self.taa)}
 
 
 def check_number(name: str, value: object, *, whole: bool) -> None:
     """Raise `SettingsError` unless `value` is a number (a whole one where asked) within the setting's range."""
     low, high = RANGES[name]
     kind = "a whole number" if whole else "a number"
-    number = isinstance(value, int if whole else Real) and not isinstance(value, bool)
+    number = isinstance(value, Integral if whole else Real) and not isinstance(value, bool)
     if not number or not low <= value <= high:  # type: ignore[operator]
         raise SettingsError(f"Settings.{name}: expected {kind} in {low:g}..{high:g}, got {value!r}")

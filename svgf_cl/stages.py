@@ -36,7 +36,7 @@ class StageView:
         count = max(self.signals, 1) * self.channels
         chosen = planes[self.first :: self.step][:count]
         stack = chosen.reshape(max(self.signals, 1), self.channels, *planes.shape[1:])
-        images = np.ascontiguousarray(np.moveaxis(stack, 1, -1))
+        images = np.array(np.moveaxis(stack, 1, -1), order="C")
         if self.channels == 1:
             images = images[..., 0]
         return images if self.signals else images[0]

@@ -166,7 +166,7 @@ def test_nan_misses_every_threshold(frames: Path) -> None:
 def test_demo_prints_gain_times_and_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("demo", "--frames", "2", "--size", "32x18", "--reference-spp", "4", "-o", tmp_path) == 0
     said = capsys.readouterr()
-    for words in ("device: ", "PSNR", "atrous 1", f"{tmp_path}/preview.webp"):
+    for words in ("device: ", "gain dB", "atrous 1", f"{tmp_path}/preview.webp"):
         assert words in said.out
     assert said.err == "", "no progress bar where stderr is no terminal"
     assert (tmp_path / "still.0001.png").exists()
