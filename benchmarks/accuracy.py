@@ -30,7 +30,7 @@ picture's mean.
 indirect apart, TAA on. "Random": {FRAMES} frames of unrelated numbers in every field, with misses, ids and motion of
 several pixels.
 
-Why not zero: float32 rounds at 6e-8. `cosine^128` multiplies that by up to 128, an exponent of up to 87 by as much
+Why not zero: float32 rounds at 6e-8. `cosine^128` multiplies that by up to 128, an exponent of up to 80 by as much
 again, and the polynomial exponential adds 3e-7; the variance sums squares of differences.
 """
 

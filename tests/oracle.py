@@ -25,7 +25,7 @@ TOLERANCES = {
     "accumulated": 5e-6,  # a dim mean of bright taps, each off by a rounding
     "mean": 2e-5,
     "moment_variance": 4e-5,  # squares of differences
-    "variance": 4e-5,  # the cosine to the power of 128, and exp of up to -87 amplify a rounding that often
+    "variance": 4e-5,  # the cosine to the power of 128, and exp of up to -80 amplify a rounding that often
     "level": 3e-5,
     "level_variance": 4e-5,  # the same weights squared
     "antialiased": 1.5e-4,  # chroma is a small difference of large numbers
