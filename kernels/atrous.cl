@@ -17,13 +17,13 @@ typedef struct {
     floatv color[SIGNALS][3], variance[SIGNALS], weight[SIGNALS];
 } Sum;
 
-inline floatv luminance_at(const int4 size, int signal, int i, __global const float *source) {
+INLINE floatv luminance_at(const int4 size, int signal, int i, __global const float *source) {
     __global const float *color = source + 3 * signal * size.w + i;
     return luminance(load(color), load(color + size.w), load(color + 2 * size.w));
 }
 
 // 3x3 Gaussian of the variance over hits, a miss has no variance to give.
-inline floatv smooth_variance(const int4 size, int here, __global const float *depth, __global const float *variance) {
+INLINE floatv smooth_variance(const int4 size, int here, __global const float *depth, __global const float *variance) {
     floatv sum = (floatv)(0.0f), weight = (floatv)(1e-30f);
 #pragma unroll
     for (int dy = -1; dy <= 1; ++dy) {
@@ -39,7 +39,7 @@ inline floatv smooth_variance(const int4 size, int here, __global const float *d
     return sum / weight;
 }
 
-inline void add_tap(Sum *sum, Centre centre, floatv depth_scale, float h, const int4 size, int tap,
+INLINE void add_tap(Sum *sum, Centre centre, floatv depth_scale, float h, const int4 size, int tap,
                     __global const float *guide, __global const float *source) {
     floatv cosine = centre.normal[0] * load(guide + NORMAL * size.w + tap);
     cosine += centre.normal[1] * load(guide + (NORMAL + 1) * size.w + tap);

@@ -12,7 +12,7 @@
 #define MAX_ILLUMINATION 1e15f  // its square can still be summed in float32
 #define MAX_RADIANCE 1e38f      // finite, whatever the albedo
 
-inline floatv known_albedo(__global const float *albedo, intv i) {
+INLINE floatv known_albedo(__global const float *albedo, intv i) {
     const floatv a = gather(albedo, i);
     return where(isfinite(a), max(a, (floatv)(MIN_ALBEDO)), (floatv)(1.0f));
 }
@@ -22,7 +22,7 @@ typedef struct {
 } Color;
 
 // Zero where any channel is not finite: clamping or scaling an infinity would leave a firefly or a NaN.
-inline Color finite_color(__global const float *image, intv i) {
+INLINE Color finite_color(__global const float *image, intv i) {
     Color c;
     UNROLLED_FOR(k, 3) c.channel[k] = gather(image, i + k);
     const intv good = isfinite(c.channel[0]) & isfinite(c.channel[1]) & isfinite(c.channel[2]);
@@ -31,10 +31,10 @@ inline Color finite_color(__global const float *image, intv i) {
 }
 
 #if HAS_EMISSION
-inline floatv known_emission(Color emission, int k) { return max(emission.channel[k], (floatv)(0.0f)); }
+INLINE floatv known_emission(Color emission, int k) { return max(emission.channel[k], (floatv)(0.0f)); }
 #endif
 
-inline void put_illumination(floatv c, intv inside, __global float *plane) {
+INLINE void put_illumination(floatv c, intv inside, __global float *plane) {
     c = clamp(c, 0.0f, MAX_ILLUMINATION);
     store(where(inside, c, (floatv)(0.0f)), plane);
 }

@@ -12,7 +12,7 @@ typedef struct {
     floatv channel[3];  // Y, Co, Cg
 } Tone;
 
-inline Tone tone_map(const int4 size, int i, __global const float *color) {
+INLINE Tone tone_map(const int4 size, int i, __global const float *color) {
     floatv c[3];
     UNROLLED_FOR(k, 3) c[k] = load(color + k * size.w + i);
     Tone t;
@@ -26,7 +26,7 @@ inline Tone tone_map(const int4 size, int i, __global const float *color) {
 
 // Weights of the four taps around a fraction f; the interpolation keeps edges sharp that a bilinear one would soften
 // a little more in every frame.
-inline void catmull_rom(floatv f, floatv *w) {
+INLINE void catmull_rom(floatv f, floatv *w) {
     w[0] = f * (-0.5f + f * (1.0f - 0.5f * f));
     w[1] = 1.0f + f * f * (-2.5f + 1.5f * f);
     w[2] = f * (0.5f + f * (2.0f - 1.5f * f));
@@ -35,7 +35,7 @@ inline void catmull_rom(floatv f, floatv *w) {
 
 // Element of the motion to follow: that of the nearest surface in the 3x3 neighbourhood. A pixel beside an edge moves with
 // the edge; with its own motion it would fetch, and keep, what the edge covered a frame ago.
-inline intv foremost_motion(const int4 size, int x, int y, __global const float *depth) {
+INLINE intv foremost_motion(const int4 size, int x, int y, __global const float *depth) {
     const int here = at(size, x, y);
     floatv nearest = load(depth + here);
     nearest = where(nearest > 0.0f, nearest, (floatv)(INFINITY));

@@ -36,7 +36,7 @@ typedef struct {
     floatv color[SIGNALS][3], mean[SIGNALS], variance[SIGNALS], length, weight;
 } History;
 
-inline Expected expect(const int4 size, int x, int y, __global const float *motion, __global const float *guide,
+INLINE Expected expect(const int4 size, int x, int y, __global const float *motion, __global const float *guide,
                        float depth_threshold) {
     const int here = at(size, x, y);
     const intv i = interleaved(size, x, y, MOTION);
@@ -69,7 +69,7 @@ inline Expected expect(const int4 size, int x, int y, __global const float *moti
 
 // The tap (dx, dy) off the top left of the footprint, its weight 0 unless it shows the expected surface. Positions outside
 // the image are moved into the halo, where nothing was hit.
-inline Tap consistent_tap(const int4 size, Expected e, intv dx, intv dy, floatv weight,
+INLINE Tap consistent_tap(const int4 size, Expected e, intv dx, intv dy, floatv weight,
                           __global const float *previous_guide, float normal_threshold) {
     Tap tap;
     tap.at = places(at_lanes(size, clamp(e.left + dx, -1, size.x), clamp(e.top + dy, -1, size.y)));
@@ -85,7 +85,7 @@ inline Tap consistent_tap(const int4 size, Expected e, intv dx, intv dy, floatv 
     return tap;
 }
 
-inline History no_history(void) {
+INLINE History no_history(void) {
     History h;
     h.weight = h.length = (floatv)(0.0f);
     UNROLLED_FOR(s, SIGNALS) {
@@ -96,7 +96,7 @@ inline History no_history(void) {
 }
 
 // Mixes in one tap. The variance of a mixture is the mean of the variances plus the spread of the means.
-inline void add_tap(History *h, const int4 size, Tap tap, __global const float *history, __global const float *moments) {
+INLINE void add_tap(History *h, const int4 size, Tap tap, __global const float *history, __global const float *moments) {
     h->weight += tap.weight;
     const floatv share = where(h->weight > 0.0f, tap.weight / h->weight, (floatv)(0.0f));
     h->length += share * (fetch(moments + LENGTH * size.w, tap.at) - h->length);
@@ -110,7 +110,7 @@ inline void add_tap(History *h, const int4 size, Tap tap, __global const float *
     }
 }
 
-inline History select_history(intv mask, History yes, History no) {
+INLINE History select_history(intv mask, History yes, History no) {
     yes.weight = where(mask, yes.weight, no.weight);
     yes.length = where(mask, yes.length, no.length);
     UNROLLED_FOR(s, SIGNALS) {

@@ -16,7 +16,7 @@ typedef struct {
     floatv weight, first[SIGNALS], second[SIGNALS];  // sums of w, w (M - M(p)), w (V + (M - M(p))^2)
 } Moments;
 
-inline void add_tap(Moments *sum, floatv w, const int4 size, int tap, const floatv *centre, __global const float *moments) {
+INLINE void add_tap(Moments *sum, floatv w, const int4 size, int tap, const floatv *centre, __global const float *moments) {
     sum->weight += w;
     UNROLLED_FOR(s, SIGNALS) {
         __global const float *mean = moments + (MOMENTS + 2 * s) * size.w;
@@ -28,7 +28,7 @@ inline void add_tap(Moments *sum, floatv w, const int4 size, int tap, const floa
 
 // Sums over the neighbourhood. They are taken about the centre's own mean: the centre is one of the samples, so the
 // variance is never small against the shift and the difference does not cancel.
-inline Moments neighbourhood(const int4 size, int here, float sigma_depth, float slope_floor, const floatv *centre,
+INLINE Moments neighbourhood(const int4 size, int here, float sigma_depth, float slope_floor, const floatv *centre,
                              __global const float *guide, __global const float *moments) {
     __global const float *depth = guide + DEPTH * size.w;
     const floatv z = load(depth + here);
