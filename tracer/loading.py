@@ -48,21 +48,14 @@ def load_scene(path: str | PathLike[str], sky: Colour | None = None) -> Scene:
     if not path.is_file():
         raise SceneError(f"{path}: no such file")
     try:
-        loaded, documents = _load(path)
-    # Whatever goes wrong in trimesh is raised as whatever it is there: to the user the file is unreadable.
-    except Exception as error:
-        raise SceneError(f"{path}: cannot be read as glTF, GLB or OBJ ({type(error).__name__}: {error})") from error
-    materials = _Materials(path, documents)
-    instances = [
-        _instance(loaded.geometry[geometry], transform, materials)
-        for transform, geometry in (loaded.graph[node] for node in loaded.graph.nodes_geometry)
-        if isinstance(loaded.geometry[geometry], trimesh.Trimesh)
-    ]
-    camera_path = CameraPath.static(_camera(loaded)) if loaded.has_camera else None
-    try:
+        instances, camera_path = _contents(*_load(path))
         return Scene(instances, sky=sky, camera_path=camera_path)
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from error
+    # Files hold anything, and trimesh raises whatever comes of it: to the user the file is unreadable.
+    except Exception as error:
+        reason = " ".join(f"{type(error).__name__}: {error}".split())
+        raise SceneError(f"{path}: cannot be read as glTF, GLB or OBJ ({reason})") from error
 
 
 def _load(path: Path) -> tuple[trimesh.Scene, list[dict[str, Any]]]:
@@ -74,6 +67,17 @@ def _load(path: Path) -> tuple[trimesh.Scene, list[dict[str, Any]]]:
     return trimesh.load_scene(io.BytesIO(data), file_type=kind, resolver=FilePathResolver(str(path))), documents
 
 
+def _contents(loaded: trimesh.Scene, documents: list[dict[str, Any]]) -> tuple[list[Instance], CameraPath | None]:
+    """Everything that can be hit, in its place, and the file's camera if it has one."""
+    materials = _Materials(documents)
+    instances = [
+        _instance(loaded.geometry[geometry], transform, materials)
+        for transform, geometry in (loaded.graph[node] for node in loaded.graph.nodes_geometry)
+        if isinstance(loaded.geometry[geometry], trimesh.Trimesh)
+    ]
+    return instances, CameraPath.static(_camera(loaded)) if loaded.has_camera else None
+
+
 def _instance(mesh: trimesh.Trimesh, transform: np.ndarray, materials: _Materials) -> Instance:
     """A mesh moved to its place in the world."""
     # A mirrored object turns its triangles over, and with them the side that emits light.
@@ -82,17 +86,22 @@ def _instance(mesh: trimesh.Trimesh, transform: np.ndarray, materials: _Material
     normals = None
     # trimesh makes up smooth normals for every mesh that is asked for them: only those of the file are in its cache.
     if "vertex_normals" in mesh._cache:
-        moved = mesh.vertex_normals @ np.linalg.inv(transform[:3, :3])
-        normals = trimesh.unitize(moved)[faces]
+        normals = trimesh.unitize(mesh.vertex_normals @ _cofactors(transform[:3, :3]).T)[faces]
     uv = getattr(mesh.visual, "uv", None)
     return Instance(corners, materials.of(mesh), normals, None if uv is None else np.asarray(uv)[faces])
+
+
+def _cofactors(matrix: np.ndarray) -> np.ndarray:
+    """What turns normals, up to length and sign, where `matrix` moves points: a flattening one has no inverse."""
+    a, b, c = matrix / (np.abs(matrix).max() or 1.0)  # else the products of a small scale are taken for zero
+    return np.array([np.cross(b, c), np.cross(c, a), np.cross(a, b)])
 
 
 class _Materials:
     """The materials of one file, each made once."""
 
-    def __init__(self, path: Path, documents: list[dict[str, Any]]) -> None:
-        self._path, self._documents = path, documents
+    def __init__(self, documents: list[dict[str, Any]]) -> None:
+        self._documents = documents
         self._made: dict[str, Material] = {}
         self._images: dict[int, Image] = {}
 
@@ -110,13 +119,12 @@ class _Materials:
     def _from_gltf(self, source: Any) -> Material:
         document = self._documents[int(source.name)]
         reflection = document.get("pbrMetallicRoughness", {})
-        strength = (
-            document.get("extensions", {}).get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1.0)
-        )
+        extensions = document.get("extensions") or {}
+        strength = (extensions.get("KHR_materials_emissive_strength") or {}).get("emissiveStrength", 1.0)
         emission = np.array(document.get("emissiveFactor", BLACK)) * strength
         for name, where in (("baseColorTexture", reflection), ("emissiveTexture", document)):
             if name in where and getattr(source, name) is None:
-                raise SceneError(f"{self._path}: the {name} of material {document.get('name')!r} cannot be read")
+                raise SceneError(f"the {name} of material {document.get('name')!r} cannot be read")
         return Material(
             _colour(reflection.get("baseColorFactor", WHITE)),
             _colour(emission),

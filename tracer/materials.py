@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .errors import SceneError
 from .textures import LINEAR, Image, Textures
 from .vectors import Float32
 
@@ -26,12 +27,22 @@ class Material:
         Linear radiance, >= 0.
     base_texture, emission_texture : (h, w, 3) uint8, optional
         sRGB images that multiply the two.
+
+    Raises
+    ------
+    SceneError
+        A colour is not finite or below 0.
     """
 
     base_colour: Colour = (0.8, 0.8, 0.8)
     emission: Colour = (0.0, 0.0, 0.0)
     base_texture: Image | None = None
     emission_texture: Image | None = None
+
+    def __post_init__(self) -> None:
+        for name, colour in (("colour", self.base_colour), ("emission", self.emission)):
+            if not (np.isfinite(colour).all() and min(colour) >= 0.0):
+                raise SceneError(f"material: expected a finite {name} >= 0, got {colour}")
 
     def mean_emission(self) -> NDArray[np.float64]:
         """Radiance (3,) averaged over the texture."""

@@ -16,6 +16,10 @@ from tracer.textures import LINEAR
 SKY = (1.0, 1.0, 1.0)
 # Red and green above blue and white.
 IMAGE = np.array([[(255, 0, 0), (0, 255, 0)], [(0, 0, 255), (255, 255, 255)]], np.uint8)
+# Attributes of the test mesh, without and with normals; these lean towards +x and +y.
+FLAT = {"POSITION": 0, "TEXCOORD_0": 1}
+SMOOTH = FLAT | {"NORMAL": 3}
+NORMAL = (0.48, 0.36, 0.8)
 # Sees the unit square around the origin, and a little more.
 FRONT = Camera((0, 0, 2), (0, 0, 0), fov_y=30.0)
 
@@ -30,12 +34,22 @@ def uri(data: bytes, kind: str) -> str:
     return f"data:{kind};base64,{base64.b64encode(data).decode()}"
 
 
-def gltf(path: Path, material: dict[str, Any], nodes: list[dict[str, Any]], **more: Any) -> Path:
-    """Write a .gltf with one mesh, a unit square in the plane z = 0 whose front and top are +z and +y."""
+def gltf(
+    path: Path,
+    material: dict[str, Any],
+    nodes: list[dict[str, Any]],
+    attributes: dict[str, int] = FLAT,
+    **more: Any,
+) -> Path:
+    """Write a .gltf with one mesh, a unit square in the plane z = 0 whose front and top are +z and +y.
+
+    Without `attributes` of its own the mesh has no normals; those of accessor 3 are `NORMAL`.
+    """
     positions = np.array([(-0.5, 0.5, 0), (-0.5, -0.5, 0), (0.5, -0.5, 0), (0.5, 0.5, 0)], "<f4")
+    normals = np.array(4 * [NORMAL], "<f4")
     texcoords = np.array([(0, 0), (0, 1), (1, 1), (1, 0)], "<f4")  # glTF: v points down
     indices = np.array([0, 1, 2, 0, 2, 3], "<u4")
-    parts = [positions.tobytes(), texcoords.tobytes(), indices.tobytes()]
+    parts = [positions.tobytes(), texcoords.tobytes(), indices.tobytes(), normals.tobytes()]
     starts = np.cumsum([0, *map(len, parts)])
     document = {
         "asset": {"version": "2.0"},
@@ -43,7 +57,7 @@ def gltf(path: Path, material: dict[str, Any], nodes: list[dict[str, Any]], **mo
         "scenes": [{"nodes": list(range(len(nodes)))}],
         "nodes": nodes,
         "meshes": [
-            {"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "indices": 2, "material": 0}]},
+            {"primitives": [{"attributes": attributes, "indices": 2, "material": 0}]},
         ],
         "materials": [material],
         "textures": [{"source": 0}],
@@ -59,6 +73,7 @@ def gltf(path: Path, material: dict[str, Any], nodes: list[dict[str, Any]], **mo
             },
             {"bufferView": 1, "componentType": 5126, "count": 4, "type": "VEC2"},
             {"bufferView": 2, "componentType": 5125, "count": 6, "type": "SCALAR"},
+            {"bufferView": 3, "componentType": 5126, "count": 4, "type": "VEC3"},
         ],
         "bufferViews": [
             {"buffer": 0, "byteOffset": int(start), "byteLength": len(part)}
@@ -169,3 +184,45 @@ def test_an_unreadable_texture_is_named(tmp_path: Path) -> None:
     path = gltf(tmp_path / "a.gltf", material, [{"mesh": 0}], images=[{"uri": uri(b"no png", "image/png")}])
     with pytest.raises(SceneError, match="baseColorTexture of material 'brick'"):
         load_scene(path, sky=SKY)
+
+
+@pytest.mark.parametrize("scale", [(1, 1, 1), (1, 1, 0.5), (1, -1, 2), (1e-7, 1e-7, 1e-7), (-1, 1, 1)])
+def test_normals_turn_with_what_they_stand_on(tmp_path: Path, scale: tuple[float, float, float]) -> None:
+    scene = load_scene(gltf(tmp_path / "a.gltf", {}, [{"mesh": 0, "scale": scale}], SMOOTH), sky=SKY)
+    camera = Camera((0, 0, 2 * abs(scale[0])), (0, 0, 0), fov_y=30.0)
+    expected = np.array(NORMAL) / scale
+    expected *= np.sign(expected[2]) / np.linalg.norm(expected)
+    np.testing.assert_allclose(render_frame(scene, camera, None, (9, 9)).normal[4, 4], expected, atol=1e-6)
+
+
+@pytest.mark.parametrize("scale", [(1, 1, 0), (1, 0, 1), (0, 0, 0)])
+def test_a_flattened_object_is_no_error(tmp_path: Path, scale: tuple[float, float, float]) -> None:
+    nodes = [{"mesh": 0}, {"mesh": 0, "scale": scale, "translation": [0, 0, 0.1]}]
+    frame = render_frame(load_scene(gltf(tmp_path / "a.gltf", {}, nodes, SMOOTH), sky=SKY), FRONT, None, (9, 9))
+    assert np.isfinite(frame.color).all()
+    expected = (0, 0, 1) if scale == (1, 1, 0) else NORMAL
+    np.testing.assert_allclose(frame.normal[4, 4], expected, atol=1e-6)
+
+
+def test_an_extension_that_is_null_is_absent(tmp_path: Path) -> None:
+    material = {"emissiveFactor": [1, 1, 1], "extensions": {"KHR_materials_emissive_strength": None}}
+    scene = load_scene(gltf(tmp_path / "a.gltf", material, [{"mesh": 0}]))
+    assert (render_frame(scene, FRONT, None, (9, 9)).emission[4, 4] == 1).all()
+
+
+@pytest.mark.parametrize("emission", [[np.nan, 0, 0], [np.inf, 1, 1]])
+def test_emission_without_sense_is_refused(tmp_path: Path, emission: list[float]) -> None:
+    path = gltf(tmp_path / "a.gltf", {"emissiveFactor": emission}, [{"mesh": 0}])
+    with pytest.raises(SceneError, match=r"a\.gltf: material: expected a finite emission >= 0"):
+        load_scene(path)
+
+
+@pytest.mark.parametrize(
+    "material",
+    [{"emissiveFactor": [1, 2]}, {"pbrMetallicRoughness": 3}, {"extensions": [1]}, {"emissiveFactor": "red"}],
+)
+def test_material_without_sense_is_one_line_that_names_the_file(tmp_path: Path, material: dict[str, Any]) -> None:
+    path = gltf(tmp_path / "a.gltf", material, [{"mesh": 0}])
+    with pytest.raises(SceneError, match=r"a\.gltf: cannot be read") as caught:
+        load_scene(path, sky=SKY)
+    assert "\n" not in str(caught.value)

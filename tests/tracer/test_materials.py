@@ -1,7 +1,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
+from tracer.errors import SceneError
 from tracer.materials import Material, MaterialTable
 from tracer.textures import LINEAR
 
@@ -24,3 +26,11 @@ def test_mean_emission_averages_the_texture() -> None:
     half[0] = 0
     material = Material(emission=(4.0, 4.0, 4.0), emission_texture=half)
     np.testing.assert_allclose(material.mean_emission(), 2 * LINEAR[IMAGE[0, 0]], rtol=1e-6)
+
+
+@pytest.mark.parametrize("colour", [(0.0, np.nan, 0.0), (1.0, 1.0, np.inf), (-0.1, 1.0, 1.0)])
+def test_colours_are_finite_and_not_below_0(colour: tuple[float, float, float]) -> None:
+    with pytest.raises(SceneError, match="finite colour >= 0"):
+        Material(colour)
+    with pytest.raises(SceneError, match="finite emission >= 0"):
+        Material(emission=colour)
