@@ -82,13 +82,11 @@ def error_to_oracle(
 ) -> tuple[float, float]:
     """Greatest and root-mean-square difference between device and oracle, relative to the picture's mean.
 
-    Both denoise the same sequence from its first frame on, each with its own history.
+    Both denoise the same sequence from its first frame on, each with its own history; both figures are over all of it.
     """
     den, oracle = Denoiser(ERROR_SHAPE, settings=settings, queue=queue), Reference(ERROR_SHAPE, settings)
-    worst, squares = 0.0, 0.0
+    errors = []
     for frame in room_frames(ERROR_SHAPE, frames, signals=signals):
         expected = oracle.denoise(frame)
-        off = np.abs(den.denoise(frame) - expected) / expected.mean()
-        worst = max(worst, float(off.max()))
-        squares = float(np.mean(off**2))
-    return worst, squares**0.5
+        errors.append(np.abs(den.denoise(frame) - expected) / expected.mean())
+    return float(np.max(errors)), float(np.sqrt(np.mean(np.square(errors))))

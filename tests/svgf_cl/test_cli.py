@@ -23,7 +23,7 @@ from svgf_cl.sequence import (
     write_picture,
 )
 
-COMMANDS = ("devices", "demo", "render", "denoise", "compare")
+COMMANDS = ("devices", "demo", "render", "denoise", "compare", "bench")
 NAMES = [f"frame.{number:04d}.exr" for number in range(3)]
 
 
