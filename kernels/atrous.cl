@@ -63,7 +63,7 @@ __kernel void atrous(const int4 size, const int step, const float sigma_depth, c
                      const float depth_slope_floor, __global const float *restrict guide,
                      __global const float *restrict source, __global float *restrict target) {
     const int x = first_column(), y = row();
-    if (x >= size.x) return;
+    if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
     const float spline[3] = {0.375f, 0.25f, 0.0625f};
     __global const float *depth = guide + DEPTH * size.w;

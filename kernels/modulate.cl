@@ -57,7 +57,7 @@ __kernel void demodulate(const int4 size,
 #endif
                          __global float *restrict guide, __global float *restrict illumination) {
     const int x = first_column(), y = row();
-    if (x >= size.x) return;
+    if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
     const intv inside = x + LANES < size.x;
     const intv i1 = interleaved(size, x, y, 1), i3 = interleaved(size, x, y, 3);
@@ -103,7 +103,7 @@ __kernel void modulate(const int4 size,
 #endif
                        __global const float *restrict illumination, __global float *restrict out) {
     const int x = first_column(), y = row();
-    if (x >= size.x) return;
+    if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
 #if HAS_ALBEDO || HAS_EMISSION
     const intv i3 = interleaved(size, x, y, 3);

@@ -57,7 +57,7 @@ __kernel void taa(const int4 size, const float alpha_taa, __global const float *
                   __global const float *restrict history, __global float *restrict next_history,
                   __global float *restrict out) {
     const int x = first_column(), y = row();
-    if (x >= size.x) return;
+    if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
     const intv m = foremost_motion(size, x, y, guide + DEPTH * size.w);
     const floatv mx = gather(motion, m), my = gather(motion, m + 1);

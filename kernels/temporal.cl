@@ -128,7 +128,7 @@ __kernel void temporal(const int4 size, const float alpha_color, const float alp
                        __global const float *restrict previous_moments, __global float *restrict accumulated,
                        __global float *restrict moments) {
     const int x = first_column(), y = row();
-    if (x >= size.x) return;
+    if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
     const Expected e = expect(size, x, y, motion, guide, depth_threshold);
     const intv hit = load(guide + DEPTH * size.w + here) > 0.0f;

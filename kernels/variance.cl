@@ -55,7 +55,7 @@ __kernel void variance(const int4 size, const float sigma_depth, const float dep
                        __global const float *restrict guide, __global const float *restrict moments,
                        __global float *restrict illumination) {
     const int x = first_column(), y = row();
-    if (x >= size.x) return;
+    if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
     const floatv length = load(moments + LENGTH * size.w + here);
     const intv brief = (length > 0.0f) & (length < NEARLY_LONG);

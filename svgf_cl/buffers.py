@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pyopencl as cl
@@ -30,15 +30,10 @@ class Buffers:
         planes = {name: inputs.planes(name) for name in persistent_buffers(passes)}
         sizes = {slot: max(inputs.planes(name) for name in slots if slots[name] == slot) for slot in slots.values()}
         self.nbytes = sum(layout.nbytes(count) for count in (*planes.values(), *sizes.values()))
-        try:
-            scratch = {slot: self._filled(0.0, layout.nbytes(count)) for slot, count in sizes.items()}
-            self._by_name = {
-                name: self._filled(BLANK.get(name, 0.0), layout.nbytes(count)) for name, count in planes.items()
-            }
-        except (cl.MemoryError, cl.LogicError) as error:
-            raise SvgfError(
-                f"the device {queue.device.name} has no room for {self.nbytes / 2**20:.0f} MiB of planes: {error}"
-            ) from error
+        scratch = {slot: self._filled(0.0, layout.nbytes(count)) for slot, count in sizes.items()}
+        self._by_name = {
+            name: self._filled(BLANK.get(name, 0.0), layout.nbytes(count)) for name, count in planes.items()
+        }
         self._by_name |= {name: scratch[slot] for name, slot in slots.items()}
 
     def __getitem__(self, name: str) -> cl.Buffer:
@@ -63,8 +58,11 @@ class Buffers:
         return result
 
     def _filled(self, value: float, nbytes: int) -> cl.Buffer:
-        buffer = cl.Buffer(self._queue.context, cl.mem_flags.READ_WRITE, nbytes)
-        cl.enqueue_fill_buffer(self._queue, buffer, np.float32(value), 0, nbytes)
+        buffer = allocate(self._queue, nbytes)
+        try:
+            cl.enqueue_fill_buffer(self._queue, buffer, np.float32(value), 0, nbytes)
+        except cl.MemoryError as error:  # some drivers look for the room only now
+            raise out_of_memory(self._queue, nbytes) from error
         return buffer
 
 
@@ -88,7 +86,7 @@ class Uploads:
     def keep(self, name: str, nbytes: int) -> cl.Buffer:
         """A buffer of this size that stays with the denoiser."""
         if name not in self._kept or self._kept[name].size != nbytes:
-            self._kept[name] = cl.Buffer(self._queue.context, cl.mem_flags.READ_WRITE, nbytes)
+            self._kept[name] = allocate(self._queue, nbytes)
         return self._kept[name]
 
     def device_buffer(self, name: str, value: cl_array.Array) -> cl.Buffer:
@@ -106,8 +104,22 @@ class Uploads:
             raise FrameError(name, "a C-contiguous Array with offset 0 (use .copy())", "a view")
         if value.context != self._queue.context:
             raise FrameError(name, "an Array in the context of Denoiser(queue=...)", "one of another context")
-        assert isinstance(value.base_data, cl.Buffer)
-        return value.base_data
+        if not isinstance(value.base_data, cl.MemoryObjectHolder):
+            raise FrameError(name, "an Array in a buffer or memory pool", type(value.base_data).__name__)
+        return cast(cl.Buffer, value.base_data)  # one from a pool is used just like it
+
+
+def allocate(queue: cl.CommandQueue, nbytes: int) -> cl.Buffer:
+    """A buffer of uninitialised memory; `SvgfError` where the device has no room."""
+    try:
+        return cl.Buffer(queue.context, cl.mem_flags.READ_WRITE, nbytes)
+    except (cl.MemoryError, cl.LogicError) as error:
+        raise out_of_memory(queue, nbytes) from error
+
+
+def out_of_memory(queue: cl.CommandQueue, nbytes: int) -> SvgfError:
+    """The error that says what was asked of which device."""
+    return SvgfError(f"the device {queue.device.name} has no room for a buffer of {nbytes / 2**20:.0f} MiB")
 
 
 def check_out(out: Any, shape: tuple[int, int, int]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,14 +20,16 @@ from svgf_cl.planes import Layout
 from svgf_cl.settings import Settings
 from svgf_cl.stages import StageView, stage_views
 
-WORK_GROUP = 16  # neighbouring vectors of a row
+# Vectors of a work-group, along a row and down. On a GPU, where a vector is one pixel, a tile of whole warps.
+WORK_GROUP = (16, 1)
+GPU_WORK_GROUP = (32, 4)
 
 
 @dataclass(frozen=True)
 class Launch:
     """A pass with its kernel built and its constant arguments in place."""
 
-    step: Pass
+    entry: Pass
     kernel: cl.Kernel
     constants: tuple[Any, ...]
 
@@ -78,8 +80,9 @@ class Denoiser:
         self.shape = check_shape(shape)
         self.settings = check_settings(settings)
         self.queue = check_queue(queue)
-        self._layout = Layout(*self.shape)
+        self._layout = layout_of(self.shape)
         self._vector_width = devices.vector_width(self.queue.device)
+        self._work_group = GPU_WORK_GROUP if self._vector_width == 1 else WORK_GROUP
         self._keep_stages = keep_stages
         self._uploads = Uploads(self.queue)
         self._plan: Plan | None = None
@@ -95,7 +98,7 @@ class Denoiser:
         out : (H, W, 3) float32 C-contiguous ndarray or Array, optional
             Where to put the result.
         wait_for : sequence of pyopencl.Event
-            What must be complete before the frame's Arrays are read.
+            What must be complete before the frame's Arrays are read, beside what the Arrays themselves know of.
 
         Returns
         -------
@@ -106,7 +109,10 @@ class Denoiser:
         Raises
         ------
         FrameError
-            If a field is missing, of another shape or type, or on another context.
+            If a field is missing, of another shape or type, or on another context, if the set of fields changed, or if
+            `out` is the memory of a field.
+        SvgfError
+            If the device has no room (on the first frame), or cannot build a kernel (`DeviceError`).
         """
         frame.check(self.shape)
         inputs = Inputs.of(frame)
@@ -115,13 +121,18 @@ class Denoiser:
         on_host = isinstance(result, np.ndarray)
         buffers = {name: self._uploads.buffer(name, getattr(frame, name)) for name in inputs.fields}
         buffers[OUT] = self._uploads.keep(OUT, result.nbytes) if on_host else self._uploads.device_buffer(OUT, result)
+        check_apart(buffers)
         plan = self._ready(inputs)
-        if wait_for:
-            cl.enqueue_barrier(self.queue, wait_for=list(wait_for))
+        pending = [*wait_for, *unfinished(*frame.present().values(), result)]
+        if pending:
+            cl.enqueue_barrier(self.queue, wait_for=pending)
         plan.planes.begin_frame()
-        self._events = [(launch.step.name, self._run(launch, plan.planes, buffers)) for launch in plan.launches]
+        self._events = [(launch.entry.name, self._run(launch, plan.planes, buffers)) for launch in plan.launches]
         if on_host:
             cl.enqueue_copy(self.queue, result, buffers[OUT])
+        else:
+            result.add_event(self._events[-1][1])
+            self.queue.flush()  # whoever waits for that event on another queue must not wait for ever
         return result
 
     def reset(self) -> None:
@@ -178,7 +189,7 @@ class Denoiser:
             planes = Buffers(self.queue, self._layout, passes, inputs, share=not self._keep_stages)
             self._plan = Plan(inputs, launches, planes, stage_views(passes, inputs, self.settings.iterations))
         if inputs != self._plan.inputs:
-            raise FrameError("fields", f"{self._plan.inputs} as before (or a call of reset)", str(inputs))
+            raise FrameError("fields", f"{self._plan.inputs} as before, or a call of reset", str(inputs))
         return self._plan
 
     def _launch(self, step: Pass, inputs: Inputs) -> Launch:
@@ -189,11 +200,11 @@ class Denoiser:
         return Launch(step, cl.Kernel(program, step.kernel), (self._layout.size, *scalars))
 
     def _run(self, launch: Launch, planes: Buffers, user: dict[str, cl.Buffer]) -> cl.Event:
-        names = (*launch.step.reads, *launch.step.writes)
+        names = (*launch.entry.reads, *launch.entry.writes)
         arguments = [user[name] if name in user else planes[name] for name in names]
-        vectors = -(-self._layout.width // self._vector_width)
-        global_size = (-(-vectors // WORK_GROUP) * WORK_GROUP, self._layout.height)
-        return launch.kernel(self.queue, global_size, (WORK_GROUP, 1), *launch.constants, *arguments)
+        vectors = (-(-self._layout.width // self._vector_width), self._layout.height)
+        whole = tuple(-(-n // group) * group for n, group in zip(vectors, self._work_group, strict=True))
+        return launch.kernel(self.queue, whole, self._work_group, *launch.constants, *arguments)
 
     def _result(self, frame: Frame) -> Any:
         """A new array for the result, of the same kind as the frame's."""
@@ -201,6 +212,20 @@ class Denoiser:
         if all(isinstance(value, cl_array.Array) for value in frame.present().values()):
             return cl_array.empty(self.queue, shape, np.float32)
         return np.empty(shape, np.float32)
+
+
+def unfinished(*arrays: Any) -> Iterator[cl.Event]:
+    """Events of device arrays that are still being computed, perhaps on another queue."""
+    for value in arrays:
+        if isinstance(value, cl_array.Array):
+            yield from value.events
+
+
+def check_apart(buffers: dict[str, cl.Buffer]) -> None:
+    """Raise `FrameError` where the result would overwrite a field that neighbouring pixels still read."""
+    for name, buffer in buffers.items():
+        if name != OUT and buffer.int_ptr == buffers[OUT].int_ptr:
+            raise FrameError(OUT, "memory of its own", f"that of {name}")
 
 
 def check_settings(settings: Settings | None) -> Settings:
@@ -219,6 +244,14 @@ def check_queue(queue: cl.CommandQueue | None) -> cl.CommandQueue:
     if queue.properties & cl.command_queue_properties.OUT_OF_ORDER_EXEC_MODE_ENABLE:
         raise SvgfError("Denoiser: expected an in-order queue, got one with OUT_OF_ORDER_EXEC_MODE_ENABLE")
     return queue
+
+
+def layout_of(shape: Shape) -> Layout:
+    """The layout of an image; `SvgfError` where it is too large for the kernels' indices."""
+    layout = Layout(*shape)
+    if not layout.indexable:
+        raise SvgfError(f"Denoiser: expected an image of at most about 16000 x 16000 pixels, got {shape!r}")
+    return layout
 
 
 def check_shape(shape: Shape) -> Shape:

@@ -62,31 +62,50 @@ class Inputs:
             "HAS_ID": int(self.id),
         }
 
+    def __str__(self) -> str:
+        return f"{', '.join(self.fields)} (motion of {self.motion} components)"
+
     def planes(self, buffer: str) -> int:
-        """Number of planes of a device buffer."""
-        name = buffer.removeprefix("previous ")
-        if name == "guide":
-            return 5 if self.id else 4
-        if name == "moments":
-            return 1 + 2 * self.signals
-        if name in ("antialiased", "modulated"):
-            return 3
-        if name == "demodulated":
-            return 3 * self.signals
-        return 4 * self.signals
+        """Number of planes of a device buffer; a pair's halves and all levels are alike."""
+        light = 3 * self.signals
+        with_variance = light + self.signals
+        counts = {
+            "guide": 5 if self.id else 4,
+            "demodulated": light,
+            "history": with_variance,
+            "moments": 1 + 2 * self.signals,
+            "accumulated": with_variance,
+            "level": with_variance,
+            "modulated": 3,
+            "antialiased": 3,
+        }
+        return counts[buffer.removeprefix("previous ").partition(" ")[0]]
 
 
 @dataclass(frozen=True)
 class Pass:
-    """One kernel launch. Its arguments are: size, step (if any), the settings, the reads, the writes."""
+    """One kernel launch. Its arguments are: size, step (of an a-trous level), the settings, the reads, the writes."""
 
-    name: str
-    stage: str
     kernel: str
     reads: tuple[str, ...]
     writes: tuple[str, ...]
     settings: tuple[str, ...] = ()
-    step: int | None = None
+    level: int | None = None
+
+    @property
+    def name(self) -> str:
+        """Label in profiles."""
+        return self.kernel if self.level is None else f"{self.kernel} {self.level}"
+
+    @property
+    def stage(self) -> str:
+        """Name of the kernel's source file; both ways through the albedo are one stage."""
+        return "modulate" if self.kernel == "demodulate" else self.kernel
+
+    @property
+    def step(self) -> int | None:
+        """Pixels between the taps of an a-trous level."""
+        return None if self.level is None else 2 ** (self.level - 1)
 
 
 def pipeline(inputs: Inputs, settings: Settings) -> tuple[Pass, ...]:
@@ -94,27 +113,20 @@ def pipeline(inputs: Inputs, settings: Settings) -> tuple[Pass, ...]:
     albedo = ("albedo",) if inputs.albedo else ()
     emission = ("emission",) if inputs.emission else ()
     id_ = ("id",) if inputs.id else ()
-    removed = emission if inputs.signals == 1 else ()
-    filtered = level_buffer(settings.iterations)
+    mixed_in = emission if inputs.signals == 1 else ()  # a split leaves emission out
     passes = [
         Pass(
             "demodulate",
-            "modulate",
-            "demodulate",
-            reads=(*inputs.radiance, *albedo, *removed, "normal", "depth", *id_),
+            reads=(*inputs.radiance, *albedo, *mixed_in, "normal", "depth", *id_),
             writes=("guide", "demodulated"),
         ),
         Pass(
-            "temporal",
-            "temporal",
             "temporal",
             reads=("motion", "guide", "demodulated", "previous guide", "history", "previous moments"),
             writes=("accumulated", "moments"),
             settings=("alpha_color", "alpha_moments", "depth_threshold", "normal_threshold"),
         ),
         Pass(
-            "variance",
-            "variance",
             "variance",
             reads=("guide", "moments"),
             writes=("accumulated",),
@@ -123,17 +135,13 @@ def pipeline(inputs: Inputs, settings: Settings) -> tuple[Pass, ...]:
         *atrous_levels(settings.iterations),
         Pass(
             "modulate",
-            "modulate",
-            "modulate",
-            reads=(*albedo, *emission, filtered),
+            reads=(*albedo, *emission, level_buffer(settings.iterations)),
             writes=("modulated" if settings.taa else OUT,),
         ),
     ]
     if settings.taa:
         passes.append(
             Pass(
-                "taa",
-                "taa",
                 "taa",
                 reads=("motion", "guide", "modulated", "previous antialiased"),
                 writes=("antialiased", OUT),
@@ -147,13 +155,11 @@ def atrous_levels(iterations: int) -> Iterator[Pass]:
     """The wavelet levels; the first writes the colour history of the next frame (paper, section 4.1)."""
     for level in range(1, iterations + 1):
         yield Pass(
-            f"atrous {level}",
-            "atrous",
             "atrous",
             reads=("guide", level_buffer(level - 1)),
             writes=(level_buffer(level),),
             settings=("sigma_depth", "sigma_luminance", "depth_slope_floor"),
-            step=2 ** (level - 1),
+            level=level,
         )
 
 

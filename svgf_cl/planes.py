@@ -8,6 +8,7 @@ import numpy as np
 
 HALO = 32  # pixels on every side: the reach of the widest a-trous level, 2 taps of step 16
 ROW_ALIGNMENT = 16  # pixels: the widest vector
+LARGEST_BUFFER = 8  # planes: colour and variance of two signals
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,11 @@ class Layout:
         return self.rows * self.pitch
 
     @property
+    def indexable(self) -> bool:
+        """Whether the kernels' 32-bit indices reach every element of the largest buffer."""
+        return LARGEST_BUFFER * self.plane < 2**31
+
+    @property
     def size(self) -> np.ndarray:
         """The kernels' `size` argument, an int4."""
         return np.array([self.width, self.height, self.pitch, self.plane], np.int32)
@@ -50,9 +56,3 @@ class Layout:
         """The image inside: (n * plane,) -> (n, height, width), a view."""
         stack = planes.reshape(-1, self.rows, self.pitch)
         return stack[:, HALO : HALO + self.height, HALO : HALO + self.width]
-
-    def embed(self, images: np.ndarray) -> np.ndarray:
-        """The inverse of `crop`, with a halo of zeros: (n, height, width) -> (n * plane,)."""
-        stack = np.zeros((len(images), self.rows, self.pitch), images.dtype)
-        stack[:, HALO : HALO + self.height, HALO : HALO + self.width] = images
-        return stack.reshape(-1)

@@ -136,7 +136,8 @@ def safe_motion(motion: Array) -> Array:
     """Section 2: (H, W, 2) or (H, W, 3) to (H, W, 3), clamped; far outside the image where it is not finite."""
     if motion.shape[-1] == 2:
         motion = np.concatenate((motion, np.zeros_like(motion[..., :1])), axis=-1)
-    return np.where(finite(motion), np.clip(motion, -MOTION_MAX, MOTION_MAX), NO_HISTORY)
+    bound = np.array((MOTION_MAX, MOTION_MAX, np.inf))
+    return np.where(finite(motion), np.clip(motion, -bound, bound), NO_HISTORY)
 
 
 def consistent(x: Indices, y: Indices, guides: Guides, previous: Guides, settings: Settings) -> Mask:
@@ -147,10 +148,9 @@ def consistent(x: Indices, y: Indices, guides: Guides, previous: Guides, setting
     tolerance = settings.depth_threshold * expected + np.abs(gradient).sum(axis=-1)
 
     rows, columns, inside = locate(x, y, guides.depth.shape)
-    same = inside & guides.hit & previous.hit[rows, columns]
+    same = inside & (expected <= FLOAT32_MAX) & guides.hit & previous.hit[rows, columns]
     same &= np.abs(previous.depth[rows, columns] - (expected + along_surface)) <= tolerance
     same &= dot(guides.normal, previous.normal[rows, columns]) >= settings.normal_threshold
-    # Ids are compared where both frames have them: a frame without ids says nothing of whose history it is.
     if guides.id is not None and previous.id is not None:
         same &= guides.id == previous.id[rows, columns]
     return same
@@ -337,9 +337,7 @@ class Reference:
     ----------
     guides : Guides of the last frame.
     history, antialiased : what the next frame will read, or None (`temporal`'s and `taa`'s history).
-    stages : every intermediate result of the last frame by name: demodulated, accumulated (S, H, W, 3); mean,
-        moment_variance (S, H, W); length (H, W); variance (S, H, W); and per level i illumination_i (S, H, W, 3) and
-        variance_i (S, H, W); modulated and, if it ran, taa and antialiased, its history (H, W, 3).
+    stages : every intermediate result of the last frame, named and shaped as by `Denoiser.stage`.
     """
 
     guides: Guides
@@ -362,22 +360,19 @@ class Reference:
         illumination, guides = demodulate(frame)
         self.guides = guides
         stages = self.stages = {"demodulated": illumination}
-        # A history of one signal says nothing of two, and the other way round: start anew.
-        if self.history is not None and len(self.history.accumulated.mean) != len(illumination):
-            self.history = None
 
         accumulated = temporal(illumination, guides, self.history, settings)
         illumination, var = accumulated.illumination, variance(accumulated, guides, settings)
         stages.update(accumulated=illumination, mean=accumulated.mean, moment_variance=accumulated.variance)
-        stages.update(length=accumulated.length, variance=var)
+        stages.update(history_length=accumulated.length, variance=var)
 
         for level in range(settings.iterations):
             illumination, var = atrous(illumination, var, guides, level, settings)
-            stages.update({f"illumination_{level}": illumination, f"variance_{level}": var})
-        self.history = History(guides, replace(accumulated, illumination=stages["illumination_0"]))
+            stages.update({f"level_{level + 1}": illumination, f"level_{level + 1}_variance": var})
+        self.history = History(guides, replace(accumulated, illumination=stages["level_1"]))
 
         image = stages["modulated"] = modulate(illumination, guides)
         if settings.taa:
             image, self.antialiased = taa(image, guides, self.antialiased, settings)
-            stages.update(taa=image, antialiased=self.antialiased)
+            stages["antialiased"] = self.antialiased
         return image

@@ -14,17 +14,16 @@ layouts = st.builds(Layout, height=st.integers(1, 70), width=st.integers(1, 70))
 
 
 @given(layouts, st.integers(1, 3))
-def test_crop_undoes_embed(layout: Layout, count: int) -> None:
-    images = np.arange(1, 1 + count * layout.height * layout.width, dtype=np.float32)
-    images = images.reshape(count, layout.height, layout.width)
-    planes = layout.embed(images)
+def test_crop_finds_every_pixel(layout: Layout, count: int) -> None:
+    planes = np.arange(count * layout.plane, dtype=np.float32)
     assert planes.nbytes == layout.nbytes(count)
-    assert_array_equal(layout.crop(planes), images)
+    k, y, x = np.indices((count, layout.height, layout.width))
+    assert_array_equal(layout.crop(planes), k * layout.plane + (y + HALO) * layout.pitch + HALO + x)
 
 
-@given(layouts)
-def test_outside_the_image_is_zero(layout: Layout) -> None:
-    assert layout.embed(np.ones((1, layout.height, layout.width))).sum() == layout.height * layout.width
+@pytest.mark.parametrize(("side", "indexable"), [(16000, True), (17000, False)])
+def test_indices_have_32_bits(side: int, indexable: bool) -> None:
+    assert Layout(side, side).indexable == indexable
 
 
 @given(layouts)

@@ -85,7 +85,7 @@ def lengths(*frames: Frame, **chosen: Any) -> Array:
     reference = Reference(frames[0].shape, Settings(iterations=1, **chosen))
     for frame in frames:
         reference.denoise(frame)
-    return reference.stages["length"]
+    return reference.stages["history_length"]
 
 
 @pytest.fixture
@@ -191,7 +191,7 @@ class TestTemporal:
         for color in colors:
             out = reference.denoise(wall(depth=4 + x + 100 * y, color=color))
         luma = luminance(colors.astype(np.float64))
-        assert_array_equal(reference.stages["length"], 32)
+        assert_array_equal(reference.stages["history_length"], 32)
         assert_allclose(out, colors.mean(axis=0, dtype=np.float64))
         assert_allclose(reference.stages["mean"][0], luma.mean(axis=0))
         assert_allclose(reference.stages["moment_variance"][0], luma.var(axis=0))
@@ -245,7 +245,7 @@ class TestTemporal:
         reference = Reference(SHAPE)
         for frame in (wall(id=7, color=1), wall(id=7, color=1), wall(**{"id": 7, "color": 3} | change)):
             reference.denoise(frame)
-        assert_array_equal(reference.stages["length"], 1)
+        assert_array_equal(reference.stages["history_length"], 1)
         assert_allclose(reference.stages["accumulated"], 3)
         assert_allclose(reference.stages["mean"], 3)
         assert_array_equal(reference.stages["moment_variance"], 0)
@@ -446,8 +446,8 @@ class TestPipeline:
         reference.denoise(bumpy(rng))
         assert reference.history is not None
         kept = reference.history.accumulated
-        assert_array_equal(kept.illumination, reference.stages["illumination_0"])
-        assert (kept.illumination != reference.stages["illumination_1"]).any()
+        assert_array_equal(kept.illumination, reference.stages["level_1"])
+        assert (kept.illumination != reference.stages["level_2"]).any()
         assert_array_equal(kept.variance, reference.stages["moment_variance"])
 
     def test_reset_forgets(self, rng: np.random.Generator) -> None:
@@ -494,7 +494,7 @@ class TestPipeline:
         for indirect in others:
             reference = Reference(SHAPE)
             reference.denoise(replace(scene, direct=direct, indirect=indirect))
-            results.append(reference.stages["illumination_4"])
+            results.append(reference.stages["level_5"])
         assert_array_equal(results[0][0], results[1][0])
         assert (results[0][1] != results[1][1]).any()
 
