@@ -50,7 +50,8 @@ class Settings:
         Reprojection: least cosine between the normals of pixel and tap. 0.9, 26 degrees, as much as a small ball's
         surface turns within a pixel or two.
     taa : bool
-        Temporal antialiasing after the filter; off, because a renderer often has its own.
+        Temporal antialiasing after the filter; off, because a renderer often has its own. For radiance up to about 1e4:
+        brighter light loses precision, and nothing above 1e6 comes back.
     alpha_taa : float, 0..1
         Share of the new frame in the antialiased picture. 0.2: on the moving demo 0.8 dB better than the usual 0.1, for
         each resampling of the history softens it; less suits a still camera.
