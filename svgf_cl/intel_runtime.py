@@ -29,10 +29,16 @@ VARIABLE = "OCL_ICD_VENDORS"
 
 
 def find() -> Path | None:
-    """Return the runtime's library in this Python environment or in the user's site, None if it is not installed."""
+    """Return the runtime's library in this Python environment or in the user's site, None if it is not installed.
+
+    Returns
+    -------
+    pathlib.Path or None
+    """
     schemes = (sysconfig.get_default_scheme(), sysconfig.get_preferred_scheme("user"))
     candidates = (Path(sysconfig.get_path("data", scheme), "lib", LIBRARY) for scheme in schemes)
-    return next((path for path in candidates if path.exists()), None)
+    # Not `path.exists()`, which raises where the user's site is another user's, as under sudo.
+    return next((path for path in candidates if os.path.exists(path)), None)
 
 
 def register() -> None:
@@ -55,7 +61,17 @@ def register() -> None:
 
 
 def why_unlisted(platforms: Container[str]) -> str:
-    """Return why the runtime, though installed, is not among these platforms; empty if there is nothing to explain."""
+    """Return why the runtime, though installed, is not among these platforms; empty if there is nothing to explain.
+
+    Parameters
+    ----------
+    platforms : container of str
+        Names of all listed platforms.
+
+    Returns
+    -------
+    str
+    """
     library = find()
     if library is None or PLATFORM in platforms:
         return ""
@@ -66,7 +82,14 @@ def why_unlisted(platforms: Container[str]) -> str:
 
 
 def _system_has_it() -> bool:
-    return any(LIBRARY in icd.read_text(errors="replace") for icd in SYSTEM_VENDORS.glob("*.icd"))
+    return any(LIBRARY in _content(icd) for icd in SYSTEM_VENDORS.glob("*.icd"))
+
+
+def _content(icd: Path) -> str:
+    try:
+        return icd.read_text(errors="replace")
+    except OSError:
+        return ""  # a dangling link, or not for this user: it registers nothing here
 
 
 def _vendors_folder(library: Path) -> Path:

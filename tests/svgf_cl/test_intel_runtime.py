@@ -69,6 +69,21 @@ def test_a_runtime_that_the_system_registers_is_not_loaded_twice(system):
     assert intel_runtime.VARIABLE not in os.environ
 
 
+def test_unreadable_registrations_are_skipped(system, tmp_path):
+    (system / "gone.icd").symlink_to(tmp_path / "gone")
+    (system / "folder.icd").mkdir()  # unreadable for root too
+    intel_runtime.register()
+    assert intel_runtime.VARIABLE in os.environ
+
+
+def test_a_users_site_that_is_out_of_bounds_is_skipped(monkeypatch):
+    def forbid(path, **_):
+        raise PermissionError(13, "Permission denied", str(path))
+
+    monkeypatch.setattr(os, "stat", forbid)
+    assert intel_runtime.find() is None
+
+
 def test_nothing_happens_where_it_is_not_installed(system, monkeypatch):
     monkeypatch.setattr(intel_runtime, "find", lambda: None)
     intel_runtime.register()
