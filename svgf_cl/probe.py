@@ -1,7 +1,8 @@
 """Finds out whether a listed OpenCL device works, by building and running a tiny kernel on it.
 
 A broken driver may crash or hang, so the kernel runs in a process of its own. That takes a fraction of a second; the
-answer is remembered in the cache directory, under everything that may change it.
+answer is remembered in the cache directory, under everything that may change it. A crash or a hang is no answer: the
+machine may have been busy, so it is remembered only as long as this process lives.
 """
 
 from __future__ import annotations
@@ -28,6 +29,9 @@ VERSION = 1
 MEMORY = "probes.json"
 TIMEOUT_SECONDS = 60
 
+# Starts the line that holds the answer, as drivers print on their own account, at exit too.
+ANSWER = "svgf_cl.probe answers "
+
 KERNEL = """
 kernel void probe(global const float4 *in, global float4 *out, const float scale)
 {
@@ -37,32 +41,60 @@ kernel void probe(global const float4 *in, global float4 *out, const float scale
 """
 
 
+_unanswered: dict[str, str] = {}
+
+
+class NoAnswerError(Exception):
+    """The probe came to no end; the message says how."""
+
+
 def reason(device: cl.Device, *, refresh: bool = False) -> str:
     """Return why a device does not work, in one line; an empty string if it works.
 
     Parameters
     ----------
-    device
+    device : pyopencl.Device
         Any listed device.
-    refresh
+    refresh : bool
         Doubt the remembered answer if it is that the device does not work.
+
+    Returns
+    -------
+    str
     """
-    known = _recall()
-    answer = known.get(key(device))
-    if answer is None or (refresh and answer):
-        answer = _run_apart(key(device))
-        _remember(_recall() | {key(device): answer})
-    return answer
+    name = key(device)
+    known = (_recall() | _unanswered).get(name)
+    if known is None or (refresh and known):
+        return _ask(name)
+    return known
 
 
 def key(device: cl.Device) -> str:
-    """Return what identifies a device together with its driver and this probe; equal devices share it."""
+    """Return what identifies a device together with its driver and this probe; equal devices share it.
+
+    Parameters
+    ----------
+    device : pyopencl.Device
+
+    Returns
+    -------
+    str
+    """
     platform = device.platform
     return " | ".join((platform.name, platform.version, device.name, device.driver_version, f"probe {VERSION}"))
 
 
 def run(device: cl.Device) -> str:
-    """Probe a device in this process; the result is that of `reason`."""
+    """Probe a device in this process; the result is that of `reason`.
+
+    Parameters
+    ----------
+    device : pyopencl.Device
+
+    Returns
+    -------
+    str
+    """
     numbers = np.arange(1, 65, dtype=np.float32)
     result = np.zeros_like(numbers)
     try:
@@ -81,10 +113,31 @@ def run(device: cl.Device) -> str:
 
 
 def summary(log: str) -> str:
-    """Return the line of a driver's message that says most: the first that names an error, else the last."""
+    """Return the line of a driver's message that says most: the first that names an error, else the last.
+
+    Parameters
+    ----------
+    log : str
+        May be empty.
+
+    Returns
+    -------
+    str
+    """
     lines = [line.strip() for line in log.splitlines() if line.strip()]
     errors = (line for line in lines if "error" in line.lower())
     return next(errors, lines[-1] if lines else "the driver gives no reason")
+
+
+def _ask(name: str) -> str:
+    try:
+        answer = _run_apart(name)
+    except NoAnswerError as failure:
+        _unanswered[name] = str(failure)
+        return str(failure)
+    _unanswered.pop(name, None)
+    _remember(_recall() | {name: answer})
+    return answer
 
 
 def _run_apart(wanted: str) -> str:
@@ -100,14 +153,15 @@ def _run_apart(wanted: str) -> str:
         child = subprocess.run(
             command, env=environment, capture_output=True, text=True, errors="replace", timeout=TIMEOUT_SECONDS
         )
-    except subprocess.TimeoutExpired:
-        return f"the driver hangs: no answer within {TIMEOUT_SECONDS} s"
+    except subprocess.TimeoutExpired as hang:
+        raise NoAnswerError(f"the driver hangs: no answer within {TIMEOUT_SECONDS} s") from hang
     if child.returncode < 0:
-        return f"the driver crashes ({signal.Signals(-child.returncode).name}): {summary(child.stderr)}"
-    if child.returncode:
-        return f"the probe fails: {summary(child.stderr)}"
-    # The last line only, as drivers print on their own account.
-    return str(json.loads(child.stdout.splitlines()[-1]))
+        crash = signal.Signals(-child.returncode).name
+        raise NoAnswerError(f"the driver crashes ({crash}): {summary(child.stderr)}")
+    answers = [line.removeprefix(ANSWER) for line in child.stdout.splitlines() if line.startswith(ANSWER)]
+    if child.returncode or not answers:
+        raise NoAnswerError(f"the probe fails: {summary(child.stderr)}")
+    return str(json.loads(answers[-1]))
 
 
 def _listed() -> Iterator[cl.Device]:
@@ -118,9 +172,11 @@ def _listed() -> Iterator[cl.Device]:
 
 def _recall() -> dict[str, str]:
     try:
-        return dict(json.loads((cache_folder() / MEMORY).read_text(encoding="utf-8")))
-    except (OSError, json.JSONDecodeError):
-        return {}  # never asked before, unreadable, or not ours: ask the device
+        known = json.loads((cache_folder() / MEMORY).read_bytes())
+    except (OSError, ValueError):
+        return {}  # never asked before, unreadable, or damaged: ask the device
+    entries = known.items() if isinstance(known, dict) else ()
+    return {name: answer for name, answer in entries if isinstance(answer, str)}
 
 
 def _remember(answers: dict[str, str]) -> None:
@@ -134,8 +190,9 @@ def _remember(answers: dict[str, str]) -> None:
 
 def _main(wanted: str) -> None:
     device = next((device for device in _listed() if key(device) == wanted), None)
-    answer = run(device) if device else "not listed by the loader in a process of its own"
-    print(f"\n{json.dumps(answer)}", flush=True)
+    if device is None:
+        sys.exit("the loader does not list the device in a process of its own")
+    print(f"\n{ANSWER}{json.dumps(run(device))}", flush=True)
 
 
 if __name__ == "__main__":

@@ -25,14 +25,22 @@ def memory(monkeypatch, tmp_path):
     """An empty cache folder."""
     folder = tmp_path / "cache"
     monkeypatch.setattr(probe, "cache_folder", lambda: folder)
+    monkeypatch.setattr(probe, "_unanswered", {})
     return folder
 
 
 @pytest.fixture
 def answers(monkeypatch):
     """The answers that the next probes give, first first; probing more often fails."""
-    given: list[str] = []
-    monkeypatch.setattr(probe, "_run_apart", lambda key: given.pop(0))
+    given: list[str | probe.NoAnswerError] = []
+
+    def give(key: str) -> str:
+        answer = given.pop(0)
+        if isinstance(answer, probe.NoAnswerError):
+            raise answer
+        return answer
+
+    monkeypatch.setattr(probe, "_run_apart", give)
     monkeypatch.setattr(probe, "key", lambda device: KEY)
     return given
 
@@ -74,25 +82,46 @@ def test_broken_compiler(queue, monkeypatch):
         ("kill -SEGV $$", "the driver crashes (SIGSEGV): the driver gives no reason"),
         ("echo 'LLVM ERROR: broken' >&2; kill -ABRT $$", "the driver crashes (SIGABRT): LLVM ERROR: broken"),
         ("echo 'no such module' >&2; exit 3", "the probe fails: no such module"),
-        ("""echo 'hello from the driver'; echo '"says no"'""", "says no"),
+        ("true", "the probe fails: the driver gives no reason"),
         ("exec sleep 60", "the driver hangs: no answer within 0.5 s"),
     ],
-    ids=["segfault", "abort", "exit", "chatty", "hang"],
+    ids=["segfault", "abort", "exit", "silent", "hang"],
 )
-def test_a_driver_that_misbehaves_is_an_answer(interpreter, monkeypatch, script, reason):
+def test_a_driver_that_misbehaves_gives_no_answer(interpreter, monkeypatch, script, reason):
     if "sleep" in script:
         monkeypatch.setattr(probe, "TIMEOUT_SECONDS", 0.5)
     interpreter(script)
-    assert probe._run_apart(KEY) == reason
+    with pytest.raises(probe.NoAnswerError) as error:
+        probe._run_apart(KEY)
+    assert str(error.value) == reason
+
+
+def test_a_driver_that_prints_before_and_after_the_answer(interpreter):
+    interpreter(f"""echo hello from the driver; echo '{probe.ANSWER}"says no"'; echo bye""")
+    assert probe._run_apart(KEY) == "says no"
 
 
 def test_a_device_that_only_this_process_lists(queue):
-    assert "not listed" in probe._run_apart("no such device")
+    with pytest.raises(probe.NoAnswerError, match="does not list"):
+        probe._run_apart("no such device")
 
 
 def test_answers_are_remembered(memory, answers):
     answers += ["broken", "never asked"]
     assert probe.reason(None) == probe.reason(None) == "broken"
+
+
+def test_no_answer_is_remembered_only_by_this_process(memory, answers, monkeypatch):
+    answers += [probe.NoAnswerError("hangs"), "", "never asked"]
+    assert probe.reason(None) == probe.reason(None) == "hangs"
+    monkeypatch.setattr(probe, "_unanswered", {})  # another process
+    assert probe.reason(None) == probe.reason(None) == ""
+
+
+def test_refresh_doubts_no_answer_too(memory, answers):
+    answers += [probe.NoAnswerError("hangs"), "", "never asked"]
+    assert probe.reason(None) == "hangs"
+    assert probe.reason(None, refresh=True) == probe.reason(None) == ""
 
 
 def test_refresh_doubts_only_what_is_broken(memory, answers):
@@ -111,9 +140,12 @@ def test_a_new_driver_is_probed_anew(queue):
     assert probe.key(Updated) != probe.key(queue.device)
 
 
-def test_a_damaged_memory_is_written_anew(memory, answers):
+@pytest.mark.parametrize(
+    "damaged", [b'{"some dev', b"", b"5", b"null", b"[1, 2]", b"\xff\xfe", b'{"some device": 5}'], ids=repr
+)
+def test_a_damaged_memory_is_written_anew(memory, answers, damaged):
     memory.mkdir()
-    (memory / probe.MEMORY).write_text('{"some dev')
+    (memory / probe.MEMORY).write_bytes(damaged)
     answers += ["", "never asked"]
     assert probe.reason(None) == probe.reason(None) == ""
 
