@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import functools
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import pyopencl as cl
@@ -16,6 +17,9 @@ from svgf_cl.errors import DeviceError
 
 # Here, as `import svgf_cl` comes by: a loader looks once, when anyone in this process first lists the platforms.
 intel_runtime.register()
+
+# By pyopencl's own name, so that it means the same in every program.
+VARIABLE = "PYOPENCL_CTX"
 
 # A CPU is as fast as its driver's compiler. The order is that of docs/extending.md, fastest first;
 # compute units and clock say nothing here, as all drivers report the same silicon (and Intel's a clock of 0).
@@ -36,19 +40,19 @@ class DeviceReport:
 
     Attributes
     ----------
-    selector
+    selector : str
         What names this device in ``PYOPENCL_CTX``: platform number, colon, device number.
-    platform, version
+    platform, version : str
         The OpenCL implementation.
-    device, driver
+    device, driver : str
         The device and its driver's version.
-    kind
+    kind : str
         ``GPU``, ``accelerator``, ``CPU``, ``simulator`` or ``other``.
-    reason
+    reason : str
         Why it does not work; empty if it does.
-    is_default
+    is_default : bool
         Whether `default_device` returns it.
-    handle
+    handle : pyopencl.Device, optional
         The device itself; None where the driver could not list any.
     """
 
@@ -76,44 +80,99 @@ def list_devices(*, refresh: bool = False) -> list[DeviceReport]:
 
     Parameters
     ----------
-    refresh
+    refresh : bool
         Probe again the devices that are remembered as not working.
+
+    Returns
+    -------
+    list of DeviceReport
+        At most one `is_default`; none is where `choose` raises.
     """
     reports = _survey(refresh=refresh)
     try:
-        default = _choose(reports)
+        default = choose(reports)
     except DeviceError:
         return reports
     return [replace(report, is_default=report is default) for report in reports]
 
 
-def default_device() -> cl.Device:
-    """Return the device that ``PYOPENCL_CTX`` names, else the fastest working one.
+def choose(reports: Sequence[DeviceReport]) -> DeviceReport:
+    """Return the report on the device that ``PYOPENCL_CTX`` names, else on the fastest working one.
 
     GPUs come before accelerators and these before CPUs; within a kind, discrete before integrated, then the most
     compute units times clock. CPU drivers come in the order of `CPU_PLATFORMS`. The loader's order breaks ties.
 
+    Parameters
+    ----------
+    reports : sequence of DeviceReport
+        All that `list_devices` returns.
+
+    Returns
+    -------
+    DeviceReport
+
     Raises
     ------
     DeviceError
-        No device works, or the one that ``PYOPENCL_CTX`` names does not. The message lists every device's reason.
+        No device works, or ``PYOPENCL_CTX`` names none that does.
     """
+    if working := [report for report in _candidates(reports) if report.works]:
+        return min(working, key=_rank)
+    if VARIABLE in os.environ:
+        raise DeviceError(f"{VARIABLE}={os.environ[VARIABLE]!r} names a device that does not work")
+    raise DeviceError(f"No OpenCL device works. {INSTALL_HINT}")
+
+
+def default_device() -> cl.Device:
+    """Return the device that ``PYOPENCL_CTX`` names, else the fastest working one; see `choose`.
+
+    Returns
+    -------
+    pyopencl.Device
+
+    Raises
+    ------
+    DeviceError
+        No device works, or ``PYOPENCL_CTX`` names none that does. The message lists every device's reason.
+    """
+    reports = _survey()
     try:
-        chosen = _choose(_survey())
-    except DeviceError:
-        # Drivers get repaired and permissions granted: doubt the memory before giving up.
-        chosen = _choose(_survey(refresh=True))
+        if not any(report.works for report in _candidates(reports)):
+            # Drivers get repaired and permissions granted: doubt the memory before giving up.
+            reports = _survey(refresh=True)
+        chosen = choose(reports)
+    except DeviceError as error:
+        raise DeviceError(f"{error}\nThe OpenCL loader lists:\n{_table(reports)}") from error
     assert chosen.handle is not None
     return chosen.handle
 
 
 def default_queue() -> cl.CommandQueue:
-    """Return a new queue, with profiling, on the default device; see `default_device`."""
+    """Return a new queue, with profiling, on the default device; see `default_device`.
+
+    Returns
+    -------
+    pyopencl.CommandQueue
+
+    Raises
+    ------
+    DeviceError
+        As `default_device`.
+    """
     return create_queue(default_device())
 
 
 def create_queue(device: cl.Device) -> cl.CommandQueue:
-    """Return a new queue, with profiling, on a device; all such queues of a device share one context."""
+    """Return a new queue, with profiling, on a device; all such queues of a device share one context.
+
+    Parameters
+    ----------
+    device : pyopencl.Device
+
+    Returns
+    -------
+    pyopencl.CommandQueue
+    """
     return cl.CommandQueue(_context(device), device, properties=cl.command_queue_properties.PROFILING_ENABLE)
 
 
@@ -121,6 +180,14 @@ def vector_width(device: cl.Device) -> int:
     """Return how many pixels one work-item should process: 16, 8 or 4 on CPUs, 1 elsewhere.
 
     Twice the CPU's native width hides the latency of its arithmetic; 16 is the widest type OpenCL has.
+
+    Parameters
+    ----------
+    device : pyopencl.Device
+
+    Returns
+    -------
+    int
     """
     if not device.type & cl.device_type.CPU:
         return 1
@@ -143,7 +210,7 @@ def _survey(*, refresh: bool = False) -> list[DeviceReport]:
             continue
         reports += [_report(f"{index}:{number}", device, refresh) for number, device in enumerate(devices)]
     if reason := intel_runtime.why_unlisted({platform.name for platform in platforms}):
-        reports.append(_unlisted("-", intel_runtime.PLATFORM, "unknown", reason))
+        reports.append(_unlisted("-", intel_runtime.PLATFORM, "version unknown", reason))
     return reports
 
 
@@ -170,7 +237,7 @@ def _report(selector: str, device: cl.Device, refresh: bool) -> DeviceReport:
 
 
 def _unlisted(selector: str, platform: str, version: str, reason: str) -> DeviceReport:
-    return DeviceReport(selector, platform, version, "no device", "no driver", "other", reason)
+    return DeviceReport(selector, platform, version, "no device", "unknown", "other", reason)
 
 
 def _kind(device: cl.Device) -> str:
@@ -180,26 +247,18 @@ def _kind(device: cl.Device) -> str:
     return next((kind for kind, bit in types.items() if device.type & bit), "other")
 
 
-def _choose(reports: list[DeviceReport]) -> DeviceReport:
-    if "PYOPENCL_CTX" in os.environ:
-        return _requested(reports, os.environ["PYOPENCL_CTX"])
-    working = [report for report in reports if report.works]
-    if not working:
-        raise DeviceError(f"No OpenCL device works.\n{_table(reports)}\n{INSTALL_HINT}")
-    return min(working, key=_rank)
-
-
-def _requested(reports: list[DeviceReport], name: str) -> DeviceReport:
+def _candidates(reports: Sequence[DeviceReport]) -> list[DeviceReport]:
+    """Return the reports that `choose` may choose from: the one that the user names, else all."""
+    name = os.environ.get(VARIABLE)
+    if name is None:
+        return list(reports)
     try:
         devices = cl.choose_devices(interactive=False, answers=name.split(":"))
     except (cl.Error, RuntimeError) as error:
-        raise DeviceError(f"PYOPENCL_CTX={name!r} names no device: {error}\n{_table(reports)}") from error
+        raise DeviceError(f"{VARIABLE}={name!r} names no device: {error}") from error
     if len(devices) != 1:
-        raise DeviceError(f"PYOPENCL_CTX={name!r} names {len(devices)} devices, expected one\n{_table(reports)}")
-    chosen = next(report for report in reports if report.handle == devices[0])
-    if not chosen.works:
-        raise DeviceError(f"PYOPENCL_CTX={name!r} names a device that does not work\n{_table(reports)}")
-    return chosen
+        raise DeviceError(f"{VARIABLE}={name!r} names {len(devices)} devices, expected one")
+    return [report for report in reports if report.handle == devices[0]]
 
 
 def _rank(report: DeviceReport) -> tuple[int, int, bool, int]:
@@ -212,5 +271,5 @@ def _rank(report: DeviceReport) -> tuple[int, int, bool, int]:
     return kind, 0, device.host_unified_memory, -device.max_compute_units * device.max_clock_frequency
 
 
-def _table(reports: list[DeviceReport]) -> str:
-    return "\n".join(f"  {report}" for report in reports) or "  The loader lists no device at all."
+def _table(reports: Sequence[DeviceReport]) -> str:
+    return "\n".join(f"  {report}" for report in reports) or "  no device at all"

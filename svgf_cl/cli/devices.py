@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
-from svgf_cl.devices import list_devices
+from svgf_cl.devices import DeviceReport, choose, list_devices
 
 
 def devices() -> None:
@@ -19,12 +22,23 @@ def devices() -> None:
       svgf-cl devices
       PYOPENCL_CTX=1:0 svgf-cl devices
     """
-    table = Table("", "device", "platform", "version", "works")
-    for column in table.columns:
-        column.overflow = "fold"
-    for report in list_devices():
+    reports = list_devices(refresh=True)
+    _show(reports)
+    choose(reports)  # where there is no default, its error says why
+
+
+def _show(reports: Sequence[DeviceReport]) -> None:
+    table = Table("", "works", "device", show_lines=True)
+    table.columns[-1].overflow = "fold"
+    for report in reports:
         mark = f"{report.selector}{' *' if report.is_default else ''}"
-        # "OpenCL 3.0 <what the vendor likes to add>": the driver's version says the rest in fewer words.
-        version = f"{' '.join(report.version.split()[:2])}, driver {report.driver}"
-        table.add_row(mark, report.device, report.platform, version, "yes" if report.works else f"no: {report.reason}")
+        # As Text, because names and reasons may hold what rich takes for markup.
+        table.add_row(mark, "yes" if report.works else "no", Text(_description(report)))
     Console().print(table)
+
+
+def _description(report: DeviceReport) -> str:
+    # "OpenCL 3.0 <what the vendor likes to add>": the driver's version says the rest in fewer words.
+    version = " ".join(report.version.split()[:2])
+    lines = (report.device, f"{report.platform}, {version}, driver {report.driver}", report.reason)
+    return "\n".join(line for line in lines if line)

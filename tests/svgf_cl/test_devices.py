@@ -8,6 +8,7 @@ import pyopencl as cl
 import pytest
 
 from svgf_cl import DeviceError, devices, intel_runtime, probe
+from svgf_cl.cli import main
 
 POCL = "Portable Computing Language"
 INTEL = intel_runtime.PLATFORM
@@ -150,6 +151,28 @@ def test_memory_is_doubted_before_giving_up(machine, monkeypatch):
     assert devices.default_device().name == "repaired"
 
 
+def test_a_named_device_is_doubted_before_giving_up(machine, monkeypatch):
+    machine(FakePlatform("A", [gpu("good"), gpu("repaired")]))
+    monkeypatch.setenv("PYOPENCL_CTX", "0:1")
+    monkeypatch.setattr(
+        probe, "reason", lambda device, *, refresh: "was broken" if device.name == "repaired" and not refresh else ""
+    )
+    assert devices.default_device().name == "repaired"
+
+
+@pytest.mark.parametrize("name", ["0:7", "nothing", "0:0,1"])
+def test_a_typo_probes_nothing_anew(machine, monkeypatch, name):
+    def reason(device, *, refresh):
+        assert not refresh
+        return device.reason
+
+    machine(FakePlatform("A", [gpu("good"), gpu("bad", reason="it hangs")]))
+    monkeypatch.setattr(probe, "reason", reason)
+    monkeypatch.setenv("PYOPENCL_CTX", name)
+    with pytest.raises(DeviceError):
+        devices.default_device()
+
+
 def test_no_platform_at_all(machine, monkeypatch):
     machine()
 
@@ -158,7 +181,7 @@ def test_no_platform_at_all(machine, monkeypatch):
 
     monkeypatch.setattr(cl, "get_platforms", none_found)
     assert devices.list_devices() == []
-    with pytest.raises(DeviceError, match="lists no device"):
+    with pytest.raises(DeviceError, match="no device at all"):
         devices.default_device()
 
 
@@ -202,3 +225,54 @@ def test_queues_have_profiling_and_share_their_devices_context(queue):
     other = devices.create_queue(queue.device)
     assert other != queue
     assert other.context == queue.context
+
+
+# svgf-cl devices
+
+
+@pytest.fixture
+def command(monkeypatch, capsys):
+    """A function that runs ``svgf-cl devices`` in a terminal of 80 columns: exit code, table, errors."""
+    monkeypatch.setenv("COLUMNS", "80")
+
+    def run() -> tuple[int, str, str]:
+        with pytest.raises(SystemExit) as left:
+            main(["devices"])
+        return int(left.value.code or 0), *capsys.readouterr()
+
+    return run
+
+
+def test_command_doubts_the_memory(machine, monkeypatch, command):
+    machine(FakePlatform("A", [gpu("fast")]), FakePlatform(POCL, [FakeDevice("slow")]))
+    monkeypatch.setattr(probe, "reason", lambda device, *, refresh: "" if refresh else "was broken")
+    code, table, _ = command()
+    assert code == 0
+    assert "no" not in table
+    assert "0:0 *" in table
+
+
+def test_command_says_why_there_is_no_default(machine, monkeypatch, command):
+    machine(FakePlatform("A", [gpu("good")]))
+    monkeypatch.setenv("PYOPENCL_CTX", "9")
+    code, table, errors = command()
+    assert code == 2
+    assert "good" in table
+    assert errors.startswith("svgf-cl: PYOPENCL_CTX='9' names no device")
+
+
+def test_command_says_what_to_install_where_nothing_works(machine, command):
+    machine(FakePlatform("A", [gpu("bad", reason="it is broken")]))
+    code, table, errors = command()
+    assert code == 2
+    assert "it is broken" in table
+    assert "pocl-opencl-icd" in errors
+
+
+def test_command_shows_names_and_reasons_whole(machine, command):
+    name = "pthread-skylake-avx512-Intel(R) Xeon(R) CPU @ 2.20GHz"
+    reason = "[/tmp/probe.cl] error: unknown target CPU 'generic'"  # rich would take it for markup
+    machine(FakePlatform(POCL, [FakeDevice(name), FakeDevice("other", reason=reason)], version="OpenCL 3.0 PoCL LLVM"))
+    _, table, _ = command()
+    for text in (name, f"{POCL}, OpenCL 3.0, driver 1.0", reason):
+        assert text in table
