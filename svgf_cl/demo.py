@@ -26,7 +26,7 @@ from svgf_cl.files import make_folder
 from svgf_cl.frame import Shape
 from svgf_cl.metrics import Metrics, measure
 from svgf_cl.pictures import still, write_preview
-from svgf_cl.sequence import frame_path, read_picture, write_frame, write_picture
+from svgf_cl.sequence import check_leftovers, frame_path, read_picture, write_frame, write_picture
 from svgf_cl.settings import Settings
 
 # From here on the history is long enough for the filter to be judged by.
@@ -72,6 +72,17 @@ class Demo:
         """Name the file of a ``noisy``, ``filtered``, ``denoised`` or ``reference`` frame."""
         return frame_path(self.folder / kind, number, "reference" if kind == "reference" else "frame")
 
+    def still_path(self, number: int) -> Path:
+        """Name the file that shows a compared frame."""
+        return self.folder / f"still.{number:04d}.png"
+
+    def check_leftovers(self) -> None:
+        """Raise `SequenceError` where the folder holds frames of an earlier run that this one would not replace."""
+        for kind in ("noisy", "filtered", "denoised"):
+            check_leftovers(self.folder / kind, [self.path(kind, number) for number in range(self.frames)])
+        check_leftovers(self.folder / "reference", [self.path("reference", number) for number in self.compared])
+        check_leftovers(self.folder, [self.still_path(number) for number in self.compared])
+
     def denoise(self, denoiser: Denoiser) -> Iterator[dict[str, float]]:
         """Render, denoise and write one frame after the other; yield the milliseconds of each pass."""
         for kind in ("noisy", "filtered", "denoised"):
@@ -109,7 +120,7 @@ class Demo:
                 "reference": f"reference, {self.reference_spp} spp",
             }
             panels = {label: to_bytes(read_picture(self.path(kind, number))) for kind, label in labels.items()}
-            write_png(self.folder / f"still.{number:04d}.png", still(panels))
+            write_png(self.still_path(number), still(panels))
 
     def write_preview(self) -> None:
         """Write the whole sequence as an animation, noisy beside denoised."""

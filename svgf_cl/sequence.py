@@ -1,27 +1,14 @@
 """Frames and pictures as OpenEXR files: one file a frame, float32, lossless (zip), one named channel a component.
 
-=============  ======================================  ===================================================
-field          channels                                remarks
-=============  ======================================  ===================================================
-`color`        ``R G B``                               may be absent where `direct` and `indirect` are there
-`albedo`       ``albedo.R albedo.G albedo.B``          optional
-`normal`       ``normal.X normal.Y normal.Z``
-`depth`        ``depth.Z``                             inf where nothing was hit
-`motion`       ``motion.X motion.Y [motion.Z]``        previous minus current, pixels; Z: expected depth change
-`id`           ``id``                                  optional; whole numbers as float, exact up to 2**24
-`emission`     ``emission.R emission.G emission.B``    optional
-`direct`       ``direct.R direct.G direct.B``          optional, with `indirect`
-`indirect`     ``indirect.R indirect.G indirect.B``    optional, with `direct`
-=============  ======================================  ===================================================
-
-A plain picture (denoised, reference) has ``R G B`` alone. Frames are called ``frame.0000.exr``, references
-``reference.0000.exr``; the number is the frame's place in its sequence.
+The channels of each field are in docs/conventions.md. A plain picture (denoised, reference) has ``R G B`` alone. Frames
+are called ``frame.0000.exr``, references ``reference.0000.exr``; the number is the frame's place in its sequence.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -43,6 +30,7 @@ CHANNEL_NAMES: dict[str, tuple[str, ...]] = {
     "id": ("id",),
 }
 MAX_ID = 2**24
+NUMBERED = re.compile(r"(frame|reference)\.\d+\.exr|still\.\d+\.png")
 
 
 def frame_path(folder: Path, number: int, stem: str = "frame") -> Path:
@@ -69,7 +57,7 @@ def find_frames(paths: Iterable[Path]) -> list[Path]:
     Raises
     ------
     SequenceError
-        Where a path is missing or a folder holds no frame.
+        Where a path is missing, or a folder holds no frame or lacks one between two others.
     """
     found: list[Path] = []
     for path in paths:
@@ -77,8 +65,26 @@ def find_frames(paths: Iterable[Path]) -> list[Path]:
         files = find_numbered(path, "frame") if path.is_dir() else [path]
         if not files:
             raise SequenceError(f"{path}: expected files named frame.0000.exr in this folder, found none")
+        if path.is_dir():
+            check_gaps(files)
         found += files
     return found
+
+
+def check_gaps(files: Sequence[Path]) -> None:
+    """Raise `SequenceError` where a number is missing: the next frame's motion would lead to the wrong one."""
+    for before, after in pairwise(files):
+        missing = (frame_number(before) or 0) + 1
+        if missing < (frame_number(after) or 0):
+            gap = frame_path(before.parent, missing)
+            raise SequenceError(f"{gap}: expected this frame between {before.name} and {after.name}, found none")
+
+
+def check_leftovers(folder: Path, written: Collection[Path]) -> None:
+    """Raise `SequenceError` where pictures of an earlier run would stay in `folder` and pass for a part of this one."""
+    for path in sorted(folder.iterdir() if folder.is_dir() else []):
+        if NUMBERED.fullmatch(path.name) and path not in written:
+            raise SequenceError(f"{path}: left by an earlier run of other length; delete it, or choose another folder")
 
 
 def require(path: Path) -> None:
@@ -129,21 +135,30 @@ def read_frame(path: Path) -> Frame:
 
 
 def read_sequence(paths: Sequence[Path]) -> Iterator[Frame]:
-    """Read one frame after the other; all must be of one size and hold something finite in every field.
+    """Read one frame after the other; all must be of one size, with the same fields, and something finite in each.
 
     Raises
     ------
     SequenceError
-        As `read_frame`, and where a frame differs in size from the first or a field of it has no usable value.
+        As `read_frame`, and where a frame differs in size or fields from the first or a field has no usable value.
     """
-    size = None
+    size, fields = None, None
     for path in paths:
         frame = read_frame(path)
-        size = size or frame.shape
+        size, fields = size or frame.shape, fields or fields_of(frame)
         if frame.shape != size:
             raise SequenceError(f"{path}: expected {extent(size)} pixels as in {paths[0]}, got {extent(frame.shape)}")
+        changes = [f"without {name}" for name in sorted(fields - fields_of(frame))]
+        changes += [f"with {name}" for name in sorted(fields_of(frame) - fields)]
+        if changes:
+            raise SequenceError(f"{path}: expected the fields of {paths[0]}, got a frame {', '.join(changes)}")
         check_usable(path, frame)
         yield frame
+
+
+def fields_of(frame: Frame) -> set[str]:
+    """Name the fields that are there, and motion.Z, which is optional too."""
+    return {*frame.present(), *(["motion.Z"] if frame.motion.shape[-1] == 3 else [])}
 
 
 def check_usable(path: Path, frame: Frame) -> None:

@@ -1,10 +1,10 @@
-"""The command line ``svgf-cl``: one file a command; every error on purpose ends here, as one line and exit code 2."""
+"""The command line ``svgf-cl``: one file a command; all that a user can get wrong ends here, in exit code 2."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import typer
 
@@ -15,7 +15,6 @@ from svgf_cl.errors import SvgfError
 app = typer.Typer(
     help="A denoiser for path-traced animation (SVGF) on any OpenCL device.",
     epilog="Exit codes: 0 fine; 1 a comparison failed or a run broke off; 2 wrong input.",
-    no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
@@ -23,11 +22,23 @@ app = typer.Typer(
 for command in (devices.devices, demo.demo, render.render, denoise.denoise, compare.compare, bench.bench):
     app.command()(command)
 
+# typer has no name of its own for it: every option and argument it cannot make sense of.
+UsageError: type[Any] = typer.BadParameter.__mro__[1]
+
 
 def main(argv: Sequence[str] | None = None) -> NoReturn:
     """Run the command line on `argv` (by default the process's own arguments) and leave with its exit code."""
+    arguments = list(sys.argv[1:] if argv is None else argv) or ["--help"]
     try:
-        app(argv, prog_name="svgf-cl")
+        sys.exit(app(arguments, prog_name="svgf-cl", standalone_mode=False))
     except SvgfError as error:
-        print(f"svgf-cl: {error}", file=sys.stderr)
+        complaint = str(error)
+    except UsageError as error:
+        command = error.ctx.command_path if error.ctx else "svgf-cl"
+        complaint = " ".join(f"{error.format_message().rstrip('.')}; try '{command} --help'".split())
+    except MemoryError as error:
+        complaint = f"not enough memory: {error}"
+    except (KeyboardInterrupt, typer.Abort):  # which of them, or neither, depends on typer's version
+        sys.exit(130)
+    print(f"svgf-cl: {complaint}", file=sys.stderr)
     sys.exit(2)

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from svgf_cl.cli.console import show, tracked
-from svgf_cl.cli.options import Exposure
+from svgf_cl.cli.options import Exposure, check_threshold
 from svgf_cl.errors import SequenceError
 from svgf_cl.metrics import Metrics, mean, measure
 from svgf_cl.sequence import extent, find_numbered, frame_number, read_picture, require
@@ -21,9 +21,15 @@ def compare(
     b: Annotated[
         Path, typer.Argument(metavar="B", help="Its reference, or a folder; in it reference.* count before frame.*.")
     ],
-    min_psnr: Annotated[float | None, typer.Option(metavar="DB", help="Least PSNR of any frame.")] = None,
-    min_ssim: Annotated[float | None, typer.Option(metavar="0..1", help="Least SSIM of any frame.")] = None,
-    max_relmse: Annotated[float | None, typer.Option(metavar="ERROR", help="Greatest relMSE of any frame.")] = None,
+    min_psnr: Annotated[
+        float | None, typer.Option(metavar="DB", help="Least PSNR of any frame.", callback=check_threshold)
+    ] = None,
+    min_ssim: Annotated[
+        float | None, typer.Option(metavar="0..1", help="Least SSIM of any frame.", callback=check_threshold)
+    ] = None,
+    max_relmse: Annotated[
+        float | None, typer.Option(metavar="ERROR", help="Greatest relMSE of any frame.", callback=check_threshold)
+    ] = None,
     exposure: Exposure = 0.0,
 ) -> None:
     """Compare EXR pictures (R, G, B) with their references.

@@ -12,8 +12,9 @@ from svgf_cl.cli.console import progress_bar, show, show_times, tracked
 from svgf_cl.cli.options import Output, Size, parse_size
 from svgf_cl.cli.scenes import require_tracer
 from svgf_cl.denoiser import Denoiser
+from svgf_cl.errors import SvgfError
 from svgf_cl.files import make_folder
-from svgf_cl.metrics import Metrics, require_ssim
+from svgf_cl.metrics import SSIM_WINDOW, Metrics, require_ssim
 
 
 def demo(
@@ -39,7 +40,11 @@ def demo(
     require_ssim()
     from svgf_cl.demo import SETTINGS, Demo
 
-    run = Demo(make_folder(output), frames, parse_size(size), reference_spp)
+    shape = parse_size(size)
+    if min(shape) < SSIM_WINDOW:
+        raise SvgfError(f"--size: expected at least {SSIM_WINDOW}x{SSIM_WINDOW} pixels, which SSIM needs, got {size}")
+    run = Demo(make_folder(output), frames, shape, reference_spp)
+    run.check_leftovers()
     denoiser = Denoiser(run.shape, settings=SETTINGS)
     print(f"device: {denoiser.queue.device.name.strip()} ({denoiser.queue.device.platform.name})")
     profiles = list(tracked(run.denoise(denoiser), frames, "rendering and denoising"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -15,8 +16,30 @@ from svgf_cl.settings import RANGES, Settings
 DEFAULTS: dict[str, bool | int | float] = vars(Settings())
 SWITCHES = {"true": True, "on": True, "1": True, "false": False, "off": False, "0": False}
 
+# A slip of the hand beyond it: of so many pixels squared, one plane of float4 takes 16 GiB.
+MAX_SIDE = 32768
+MAX_STOPS = 64
+
+
+def check_exposure(stops: float) -> float:
+    """Refuse an exposure that leaves nothing but black or white."""
+    if not -MAX_STOPS <= stops <= MAX_STOPS:  # NaN, too
+        raise typer.BadParameter(f"expected stops in -{MAX_STOPS}..{MAX_STOPS}, got {stops:g}")
+    return stops
+
+
+def check_threshold(value: float | None) -> float | None:
+    """Refuse NaN, which everything would miss."""
+    if value is not None and math.isnan(value):
+        raise typer.BadParameter("expected a number, got nan")
+    return value
+
+
 Output = Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Folder to write to; made if missing.")]
-Exposure = Annotated[float, typer.Option(metavar="STOPS", help="Brighten what is shown or measured as shown.")]
+Exposure = Annotated[
+    float,
+    typer.Option(metavar="STOPS", help="Brighten what is shown or measured as shown.", callback=check_exposure),
+]
 Size = Annotated[str, typer.Option(metavar="WxH", help="Width and height in pixels.")]
 
 
@@ -25,7 +48,10 @@ def parse_size(text: str) -> tuple[int, int]:
     match = re.fullmatch(r"([1-9]\d*)x([1-9]\d*)", text)
     if not match:
         raise SvgfError(f"--size: expected WIDTHxHEIGHT in pixels such as 640x360, got {text!r}")
-    return int(match[2]), int(match[1])
+    width, height = int(match[1]), int(match[2])
+    if max(width, height) > MAX_SIDE:
+        raise SvgfError(f"--size: expected at most {MAX_SIDE} pixels a side, got {text}")
+    return height, width
 
 
 def parse_rgb(text: str) -> tuple[float, float, float]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -10,9 +9,8 @@ import typer
 from svgf_cl.cli.console import progress_bar, tracked
 from svgf_cl.cli.options import Output, Size, parse_rgb, parse_size
 from svgf_cl.cli.scenes import open_scene, require_tracer
-from svgf_cl.errors import SequenceError
 from svgf_cl.files import make_folder
-from svgf_cl.sequence import find_numbered, frame_path, write_frame, write_picture
+from svgf_cl.sequence import check_leftovers, frame_path, write_frame, write_picture
 
 CAMERA_HELP = (
     "Position, point looked at, vertical field of view in degrees and, if it is not +Y, the direction that is up: "
@@ -57,8 +55,8 @@ def render(
     cameras = [Camera.parse(text) for text in camera]
     world = open_scene(scene, light)
     path = CameraPath.through(cameras) if cameras else world.camera_path
-    folder = make_folder(output)
-    check_leftovers(folder, frames, with_references=reference_spp > 0)
+    folder, written = make_folder(output), ("frame", "reference") if reference_spp else ("frame",)
+    check_leftovers(folder, [frame_path(folder, n, stem) for stem in written for n in range(frames)])
     noisy = render_sequence(world, path, shape, frames, spp, jitter, seed, bounces)
     for number, frame in enumerate(tracked(noisy, frames, "rendering")):
         write_frame(frame_path(folder, number), frame)
@@ -70,12 +68,3 @@ def render(
             )
             write_picture(frame_path(folder, number, "reference"), picture)
     print(f"{frames} frames in {output}")
-
-
-def check_leftovers(folder: Path, frames: int, *, with_references: bool) -> None:
-    """Raise `SequenceError` where frames of an earlier run would stay behind and pass for a part of this one."""
-    written = {frame_path(folder, number) for number in range(frames)}
-    written |= {frame_path(folder, number, "reference") for number in range(frames if with_references else 0)}
-    for path in find_numbered(folder, "frame") + find_numbered(folder, "reference"):
-        if path not in written:
-            raise SequenceError(f"{path}: left by an earlier run of more frames; delete it, or choose another folder")

@@ -80,11 +80,35 @@ def test_help_names_every_command(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.parametrize(
-    "argv", [["juggle"], ["render"], ["render", "cornell", "-o", "x", "--frames", "0"], ["compare", "--bogus"]]
+    ("words", "argv"),
+    [
+        ("'juggle'; try 'svgf-cl --help'", ["juggle"]),
+        ("'SCENE'; try 'svgf-cl render --help'", ["render"]),
+        ("'-o'", ["render", "cornell"]),
+        ("'--frames'", ["render", "cornell", "-o", "x", "--frames", "0"]),
+        ("--bogus; try 'svgf-cl compare --help'", ["compare", "--bogus"]),
+    ],
 )
-def test_wrong_usage_is_exit_code_2(argv: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(*argv) == 2
-    assert "Error: " in capsys.readouterr().err
+def test_wrong_usage_is_one_line(words: str, argv: list[str], refused) -> None:
+    refused(words, *argv)
+
+
+def test_no_command_at_all_shows_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run() == 0
+    assert "Usage: svgf-cl" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("error", "code"), [(KeyboardInterrupt(), 130), (MemoryError("8 EiB"), 2)])
+def test_what_comes_from_outside_leaves_no_traceback(
+    error: BaseException, code: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def broken(*_: object, **__: object) -> None:
+        raise error
+
+    monkeypatch.setattr(sys.modules["svgf_cl.cli.bench"], "Denoiser", broken)
+    assert run("bench") == code
+    said = capsys.readouterr().err
+    assert said == ("svgf-cl: not enough memory: 8 EiB\n" if code == 2 else "")
 
 
 def test_devices_marks_a_default_that_works(capsys: pytest.CaptureFixture[str]) -> None:
@@ -180,6 +204,27 @@ def test_a_bad_size(size: str, tmp_path: Path, refused) -> None:
     refused("--size: expected WIDTHxHEIGHT", "render", "cornell", f"--size={size}", "-o", tmp_path)
 
 
+def test_a_size_that_no_memory_holds(tmp_path: Path, refused) -> None:
+    refused("--size: expected at most 32768 pixels a side", "render", "cornell", "--size=1x32769", "-o", tmp_path)
+    refused("--size: expected at most 32768 pixels a side", "bench", "--size", "100000x100000")
+
+
+def test_a_demo_too_small_to_be_measured(tmp_path: Path, refused) -> None:
+    refused("--size: expected at least 11x11 pixels", "demo", "--size", "8x8", "-o", tmp_path / "demo")
+    assert not (tmp_path / "demo").exists(), "refused before the long work, not after it"
+
+
+@pytest.mark.parametrize("stops", ["2000", "-65", "nan", "inf"])
+def test_a_bad_exposure(stops: str, rendered: Path, tmp_path: Path, refused) -> None:
+    refused("expected stops in -64..64", "denoise", rendered, "-o", tmp_path, "--png", f"--exposure={stops}")
+    refused("expected stops in -64..64", "compare", rendered, rendered, f"--exposure={stops}")
+
+
+@pytest.mark.parametrize("option", ["--min-psnr", "--min-ssim", "--max-relmse"])
+def test_a_threshold_that_is_no_number(option: str, rendered: Path, refused) -> None:
+    refused(f"'{option}': expected a number, got nan", "compare", rendered, rendered, option, "nan")
+
+
 @pytest.mark.parametrize("sky", ["1,2", "red", "1,2,-3", "1,nan,1", "inf,1,1"])
 def test_a_bad_sky(sky: str, tmp_path: Path, refused) -> None:
     refused("--sky: expected", "render", "cornell", "--sky", sky, "-o", tmp_path)
@@ -203,6 +248,9 @@ def test_a_scene_without_light_is_offered_a_sky(tmp_path: Path, refused) -> None
 
 def test_frames_of_an_earlier_run_are_not_mixed_in(frames: Path, refused) -> None:
     refused("left by an earlier run", "render", "cornell", "--frames", "2", "--size", "32x18", "-o", frames)
+    for name in NAMES:
+        (frames / name).unlink()
+    refused("reference.0000.exr: left by", "render", "cornell", "--frames", "3", "--size", "32x18", "-o", frames)
 
 
 def test_missing_and_empty_input(tmp_path: Path, refused) -> None:
@@ -227,7 +275,9 @@ def test_an_absent_field(frames: Path, refused) -> None:
 
 def test_fields_that_change_within_a_sequence(frames: Path, refused) -> None:
     write_frame(frames / NAMES[1], replace(read_frame(frames / NAMES[1]), albedo=None))
-    refused("fields", "denoise", frames, "-o", frames / "out")
+    refused("0001.exr: expected the fields of", "denoise", frames, "-o", frames / "out")
+    (frames / NAMES[1]).unlink()
+    refused("0001.exr: expected this frame between", "denoise", frames, "-o", frames / "out")
 
 
 def test_a_frame_of_nothing_but_nan(frames: Path, refused) -> None:

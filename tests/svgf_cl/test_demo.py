@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from PIL import Image
 
-from svgf_cl import Denoiser
+from svgf_cl import Denoiser, SequenceError
 from svgf_cl.demo import SETTINGS, Demo
 from svgf_cl.pictures import GAP, LABEL_HEIGHT
 
@@ -49,6 +50,13 @@ def test_the_demo_gains_what_it_promises_once_warm(tmp_path: Path) -> None:
     noisy, svgf, antialiased = (demo.measure(kind)[8] for kind in ("noisy", "filtered", "denoised"))
     assert svgf.psnr > noisy.psnr + 6
     assert antialiased.psnr > noisy.psnr + 8.8
+
+
+@pytest.mark.parametrize("frames", [3, 5])
+def test_another_length_does_not_go_into_the_same_folder(run: Demo, frames: int) -> None:
+    run.check_leftovers()
+    with pytest.raises(SequenceError, match="left by an earlier run"):
+        replace(run, frames=frames).check_leftovers()
 
 
 def test_only_compared_frames_have_a_reference(run: Demo) -> None:

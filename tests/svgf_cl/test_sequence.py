@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from svgf_cl import Frame, FrameError, SequenceError
 from svgf_cl.sequence import (
     CHANNEL_NAMES,
     MAX_ID,
+    check_leftovers,
     find_frames,
     find_numbered,
     frame_number,
@@ -82,13 +84,35 @@ def test_a_picture_can_be_read_out_of_a_frame(tmp_path: Path) -> None:
 
 
 def test_frames_are_sorted_by_number_and_nothing_else_is_a_frame(tmp_path: Path) -> None:
-    for name in ("frame.10000.exr", "frame.0002.exr", "frame.9999.exr", "reference.0002.exr", "frame.0003.png"):
+    for name in ("frame.10000.exr", "frame.9998.exr", "frame.9999.exr", "reference.0002.exr", "frame.0003.png"):
         (tmp_path / name).touch()
-    wanted = ["frame.0002.exr", "frame.9999.exr", "frame.10000.exr"]
+    wanted = ["frame.9998.exr", "frame.9999.exr", "frame.10000.exr"]
     assert [path.name for path in find_frames([tmp_path])] == wanted
     assert find_numbered(tmp_path, "reference") == [tmp_path / "reference.0002.exr"]
-    assert [frame_number(tmp_path / name) for name in wanted] == [2, 9999, 10000]
+    assert [frame_number(tmp_path / name) for name in wanted] == [9998, 9999, 10000]
     assert frame_number(Path("view.exr")) is None
+
+
+def test_a_gap_in_a_folder_is_named(tmp_path: Path) -> None:
+    for number in (3, 4, 7):
+        frame_path(tmp_path, number).touch()
+    with pytest.raises(SequenceError, match=r"frame\.0005\.exr: expected this frame between frame\.0004\.exr and"):
+        find_frames([tmp_path])
+    files = [frame_path(tmp_path, 3), frame_path(tmp_path, 7)]
+    assert find_frames(files) == files, "chosen by hand"
+
+
+def test_leftovers_are_named(tmp_path: Path) -> None:
+    written = [frame_path(tmp_path, 0), tmp_path / "still.0000.png"]
+    check_leftovers(tmp_path / "nowhere", written)
+    for path in (*written, tmp_path / "photo.0007.exr", tmp_path / "preview.webp"):
+        path.touch()
+    check_leftovers(tmp_path, written)
+    for name in ("frame.0001.exr", "reference.0000.exr", "still.0001.png"):
+        (tmp_path / name).touch()
+        with pytest.raises(SequenceError, match=f"{name}: left by an earlier run"):
+            check_leftovers(tmp_path, written)
+        (tmp_path / name).unlink()
 
 
 def test_files_are_taken_as_given(tmp_path: Path) -> None:
@@ -139,7 +163,7 @@ def test_a_frame_without_any_radiance_is_refused(tmp_path: Path) -> None:
     write_frame(path, plain_frame())
     planes = {name: plane for name, plane in read_channels(path).items() if name not in CHANNEL_NAMES["color"]}
     write_channels(path, planes)
-    with pytest.raises(SequenceError, match=r"frame\.0000\.exr: Frame.color: expected an array.*channels found"):
+    with pytest.raises(SequenceError, match=r"frame\.0000\.exr: Frame\.color: expected an array.*channels found"):
         read_frame(path)
     with pytest.raises(SequenceError, match="expected channels R G B, found"):
         read_picture(path)
@@ -162,6 +186,19 @@ def test_frames_of_a_sequence_have_one_size(tmp_path: Path) -> None:
     write_frame(frame_path(tmp_path, 0), plain_frame(3, 4))
     write_frame(frame_path(tmp_path, 1), plain_frame(4, 4))
     with pytest.raises(SequenceError, match=r"frame\.0001\.exr: expected 4x3 pixels as in .*0000\.exr, got 4x4"):
+        list(read_sequence(find_frames([tmp_path])))
+
+
+def test_frames_of_a_sequence_have_the_same_fields(tmp_path: Path) -> None:
+    radiance = np.ones((3, 4, 3), np.float32)
+    flat = plain_frame(albedo=radiance)
+    flat = replace(flat, motion=np.ascontiguousarray(flat.motion[..., :2]))
+    write_frame(frame_path(tmp_path, 0), flat)
+    write_frame(frame_path(tmp_path, 1), replace(flat, albedo=None, emission=radiance))
+    with pytest.raises(SequenceError, match=r"1\.exr: expected .*0000\.exr, got a frame without albedo, with emission"):
+        list(read_sequence(find_frames([tmp_path])))
+    write_frame(frame_path(tmp_path, 1), plain_frame(albedo=radiance))
+    with pytest.raises(SequenceError, match=r"0001\.exr: .* got a frame with motion\.Z"):
         list(read_sequence(find_frames([tmp_path])))
 
 
