@@ -1,18 +1,19 @@
-# Front door. Everything runs in .venv, which the first target that needs it sets up, with an OpenCL device that works.
+# Front door. Everything runs in .venv, which the first target that needs it sets up. Targets that need an OpenCL device
+# look every time whether one still works, as a driver may go where .venv stays.
 PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint bench docs clean
+.PHONY: help demo test lint bench docs clean device
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z]*\):.*## /\1	/p' $(MAKEFILE_LIST) | expand -t 8
 
-demo: $(READY)  ## render a built-in scene with noise and denoise it
+demo: device  ## render a built-in scene with noise and denoise it
 	$(BIN)/svgf-cl demo
 
-test: $(READY)  ## run the tests
+test: device  ## run the tests
 	$(BIN)/python -m pytest -n auto --maxprocesses 8
 
 lint: $(READY)  ## check style, types and kernels (needs clang)
@@ -21,15 +22,18 @@ lint: $(READY)  ## check style, types and kernels (needs clang)
 	$(BIN)/mypy
 	$(BIN)/python scripts/lint_kernels.py
 
-bench: $(READY)  ## time every pass at 1280x720, beside the error
+bench: device  ## time every pass at 1280x720, beside the error
 	$(BIN)/svgf-cl bench
 
-docs: $(READY)  ## measure again what docs/accuracy.md says
+docs: device  ## measure again what docs/accuracy.md says
 	$(BIN)/python benchmarks/accuracy.py
 
 clean:  ## remove what the other targets made
 	rm -rf .venv build *.egg-info .*_cache
 
+device: $(READY)
+	@scripts/set_up device
+
 $(READY): pyproject.toml setup.py scripts/set_up
-	PYTHON=$(PYTHON) scripts/set_up
+	@PYTHON=$(PYTHON) scripts/set_up environment
 	@touch $@

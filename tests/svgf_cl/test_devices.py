@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import shutil
+import subprocess
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import pyopencl as cl
 import pytest
@@ -12,6 +16,7 @@ from svgf_cl.cli import main
 
 POCL = "Portable Computing Language"
 INTEL = intel_runtime.PLATFORM
+ROOT = Path(__file__).resolve().parents[2]
 
 
 @dataclass(eq=False)
@@ -276,3 +281,51 @@ def test_command_shows_names_and_reasons_whole(machine, command):
     _, table, _ = command()
     for text in (name, f"{POCL}, OpenCL 3.0, driver 1.0", reason):
         assert text in table
+
+
+# make
+
+
+@pytest.fixture
+def checkout(tmp_path, monkeypatch):
+    """A checkout that is set up, on a machine where a device works while there is a file "driver".
+
+    Its Python, its ``svgf-cl`` and the system's apt-get are pretences.
+    """
+    programs = {
+        ".venv/bin/python": '[ -e driver ] && echo "$PYOPENCL_CTX"',
+        ".venv/bin/pip": "exit 1",
+        ".venv/bin/svgf-cl": "[ -e driver ]",
+        "bin/apt-get": "touch driver",
+        "bin/id": "echo 0",
+    }
+    for name, script in programs.items():
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(f"#!/bin/sh\n{script}\n")
+        path.chmod(0o755)
+    for name in ("Makefile", "pyproject.toml", "setup.py", "scripts/set_up"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        shutil.copy(ROOT / name, tmp_path / name)
+    (tmp_path / ".venv/.ready").touch()
+    monkeypatch.setenv("PATH", f"{tmp_path / 'bin'}{os.pathsep}{os.environ['PATH']}")
+    return tmp_path
+
+
+def make(folder: Path, target: str) -> str:
+    child = subprocess.run(["make", target], cwd=folder, capture_output=True, text=True)
+    assert child.returncode == 0, child.stderr
+    return child.stdout
+
+
+def test_make_repairs_a_device_that_has_gone(checkout):
+    assert "installing PoCL" in make(checkout, "demo")
+    assert "installing" not in make(checkout, "demo")
+
+
+def test_make_installs_nothing_because_of_a_wrong_name(checkout, monkeypatch):
+    (checkout / "driver").touch()
+    monkeypatch.setenv("PYOPENCL_CTX", "no such device")
+    output = make(checkout, "demo")
+    assert "installing" not in output
+    assert "no such device" not in output
