@@ -1,8 +1,8 @@
 // Temporal antialiasing after tone mapping, back to linear HDR at the end.
 //
-//   t = YCoCg(out) / (1 + Y(out)),  h = clamp(history at p + motion, min 3x3 t, max 3x3 t),  t := h + alpha (t - h)
+//   t = YCoCg(out) / (1 + Y(out)),  h = clamp(history at p + motion, min 3x3 t, max 3x3 t),  t := h + max(alpha, 1 / N) (t - h)
 //
-// in   motion, guide: depth, modulated colour, history (YCoCg, tone mapped)
+// in   motion, guide: depth, moments: N, modulated colour, history (YCoCg, tone mapped)
 // out  next history; out: the user's (H, W, 3) array, linear HDR
 // Schied et al. 2017, section 5; Karis, High-Quality Temporal Supersampling, 2014. Tone mapping comes first so that one
 // bright sample cannot outweigh its neighbours. It goes by Y, not by luminance: the clamp bounds Y, so the inverse cannot
@@ -33,34 +33,43 @@ INLINE void catmull_rom(floatv f, floatv *w) {
     w[3] = f * f * (-0.5f + 0.5f * f);
 }
 
-// Element of the motion to follow: that of the nearest surface in the 3x3 neighbourhood. A pixel beside an edge moves with
-// the edge; with its own motion it would fetch, and keep, what the edge covered a frame ago.
-INLINE intv foremost_motion(const int4 size, int x, int y, __global const float *depth) {
+typedef struct {
+    intv column, row;
+} Position;
+
+// The nearest surface in the 3x3 neighbourhood: a pixel beside an edge moves with the edge; with its own motion it would
+// fetch, and keep, what the edge covered a frame ago.
+INLINE Position foremost(const int4 size, int x, int y, __global const float *depth) {
     const int here = at(size, x, y);
     floatv nearest = load(depth + here);
     nearest = where(nearest > 0.0f, nearest, (floatv)(INFINITY));
-    intv column = x + LANES, line = (intv)(y);
+    Position p;
+    p.column = x + LANES;
+    p.row = (intv)(y);
     for (int dy = -1; dy <= 1; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) {
             const floatv z = load(depth + here + dy * size.z + dx);  // 0 outside the image
             const intv nearer = (z > 0.0f) & (z < nearest);
             nearest = where(nearer, z, nearest);
-            column = select(column, x + dx + LANES, nearer);
-            line = select(line, (intv)(y + dy), nearer);
+            p.column = select(p.column, x + dx + LANES, nearer);
+            p.row = select(p.row, (intv)(y + dy), nearer);
         }
     }
-    return (min(column, size.x - 1) + line * size.x) * MOTION;
+    p.column = min(p.column, size.x - 1);
+    return p;
 }
 
 __kernel void taa(const int4 size, const float alpha_taa, __global const float *restrict motion,
-                  __global const float *restrict guide, __global const float *restrict color,
-                  __global const float *restrict history, __global float *restrict next_history,
-                  __global float *restrict out) {
+                  __global const float *restrict guide, __global const float *restrict moments,
+                  __global const float *restrict color, __global const float *restrict history,
+                  __global float *restrict next_history, __global float *restrict out) {
     const int x = first_column(), y = row();
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
-    const intv m = foremost_motion(size, x, y, guide + DEPTH * size.w);
+    const Position front = foremost(size, x, y, guide + DEPTH * size.w);
+    const intv m = (front.column + front.row * size.x) * MOTION;
     const floatv mx = gather(motion, m), my = gather(motion, m + 1);
+    const floatv length = gather(moments + LENGTH * size.w, at_lanes(size, front.column, front.row));
     const floatv px = to_float(x + LANES) + mx, py = to_float((intv)(y)) + my;
     const float right = (float)size.x - 0.5f, bottom = (float)size.y - 0.5f;
     const intv seen = (px >= -0.5f) & (px < right) & (py >= -0.5f) & (py < bottom);  // false for NaN
@@ -95,7 +104,8 @@ __kernel void taa(const int4 size, const float alpha_taa, __global const float *
     }
 
     // Before the first frame the history is NaN.
-    const floatv alpha = where(seen & isfinite(h.channel[0]), (floatv)(alpha_taa), (floatv)(1.0f));
+    const floatv share = max((floatv)(alpha_taa), where(length > 0.0f, 1.0f / length, (floatv)(0.0f)));
+    const floatv alpha = where(seen & isfinite(h.channel[0]), share, (floatv)(1.0f));
     Tone t;
     UNROLLED_FOR(k, 3) {
         const floatv kept = clamp(h.channel[k], low.channel[k], high.channel[k]);

@@ -130,7 +130,7 @@ def oracle_stages(
         return
     yield "modulated", image
     antialiased = wide(previous.stages["antialiased"]) if previous else None
-    resolved, tone = reference.taa(wide(now["modulated"]), guides, antialiased, settings)
+    resolved, tone = reference.taa(wide(now["modulated"]), guides, wide(now["history_length"]), antialiased, settings)
     yield "antialiased", tone
     yield "out", resolved
 

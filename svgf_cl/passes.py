@@ -143,7 +143,7 @@ def pipeline(inputs: Inputs, settings: Settings) -> tuple[Pass, ...]:
         passes.append(
             Pass(
                 "taa",
-                reads=("motion", "guide", "modulated", "previous antialiased"),
+                reads=("motion", "guide", "moments", "modulated", "previous antialiased"),
                 writes=("antialiased", OUT),
                 settings=("alpha_taa",),
             )

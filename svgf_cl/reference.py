@@ -282,25 +282,28 @@ def modulate(illumination: Array, guides: Guides) -> Array:
     return np.minimum(image, RADIANCE_MAX)
 
 
-def foremost_motion(guides: Guides) -> Array:
-    """Section 6: motion (H, W, 3) of the nearest hit among each pixel and its eight neighbours; its own if none is."""
+def foremost(guides: Guides) -> tuple[Indices, Indices]:
+    """Section 6: rows and columns, each (H, W), of the nearest hit among each pixel and its eight neighbours."""
+    here = np.indices(guides.depth.shape, dtype=np.int64)
+    rows: Indices = here[0]
+    columns: Indices = here[1]
     nearest = np.where(guides.hit, guides.depth, np.inf)
-    motion = guides.motion
     for offset in square(1):
         y, x, inside = shifted(offset, guides.depth.shape)
         nearer = inside & guides.hit[y, x] & (guides.depth[y, x] < nearest)
         nearest = np.where(nearer, guides.depth[y, x], nearest)
-        motion = np.where(nearer[..., None], guides.motion[y, x], motion)
-    return motion
+        rows, columns = np.where(nearer, y, rows), np.where(nearer, x, columns)
+    return rows, columns
 
 
-def taa(image: Array, guides: Guides, history: Array | None, settings: Settings) -> tuple[Array, Array]:
+def taa(image: Array, guides: Guides, length: Array, history: Array | None, settings: Settings) -> tuple[Array, Array]:
     """Section 6: temporal antialiasing with a neighbourhood-clamped history.
 
     Parameters
     ----------
     image : (H, W, 3), linear HDR.
     guides : Guides
+    length : (H, W), N, of `Accumulated`.
     history : (H, W, 3), tone-mapped YCoCg, or None on the first frame.
 
     Returns
@@ -313,14 +316,16 @@ def taa(image: Array, guides: Guides, history: Array | None, settings: Settings)
     current = current / (1 + current[..., :1])
     result = current
     if history is not None:
-        position = reprojected(foremost_motion(guides))
+        front = foremost(guides)
+        position = reprojected(guides.motion[front])
         x, y, weight = catmull_rom_taps(position)
         rows, columns, _ = locate(x, y, shape)
         past = np.einsum("thw,thwc->hwc", weight, history[rows, columns])
         around = np.stack([current[shifted(offset, shape)[:2]] for offset in square(1)])
         past = np.clip(past, around.min(axis=0), around.max(axis=0))
         inside = ((position >= -0.5) & (position < np.array(shape[::-1]) - 0.5)).all(axis=-1, keepdims=True)
-        result = np.where(inside, past + settings.alpha_taa * (current - past), current)
+        alpha = np.maximum(settings.alpha_taa, np.where(length[front] > 0, 1 / np.maximum(length[front], 1), 0))
+        result = np.where(inside, past + alpha[..., None] * (current - past), current)
     color = result @ RGB_OF_YCOCG.T
     return np.maximum(color / np.maximum(1 - result[..., :1], 1e-6), 0), result
 
@@ -373,6 +378,6 @@ class Reference:
 
         image = stages["modulated"] = modulate(illumination, guides)
         if settings.taa:
-            image, self.antialiased = taa(image, guides, self.antialiased, settings)
+            image, self.antialiased = taa(image, guides, accumulated.length, self.antialiased, settings)
             stages["antialiased"] = self.antialiased
         return image

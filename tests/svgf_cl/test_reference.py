@@ -20,7 +20,7 @@ from svgf_cl.reference import (
     atrous,
     consistent,
     demodulate,
-    foremost_motion,
+    foremost,
     modulate,
     surface_weight,
     taa,
@@ -356,6 +356,7 @@ class TestAtrous:
 
 class TestTaa:
     STILL = guides_of(wall())
+    LONG = np.full(SHAPE, 100.0)
 
     def test_static_constant_is_untouched(self) -> None:
         reference = Reference(SHAPE, Settings(taa=True))
@@ -365,27 +366,36 @@ class TestTaa:
 
     def test_blends_within_the_neighbourhood(self, rng: np.random.Generator) -> None:
         before, now = rng.random((2, *SHAPE, 3))
-        _, history = taa(before, self.STILL, None, Settings())
-        _, current = taa(now, self.STILL, None, Settings())
-        _, result = taa(now, self.STILL, history, Settings(alpha_taa=0.25))
+        _, history = taa(before, self.STILL, self.LONG, None, Settings())
+        _, current = taa(now, self.STILL, self.LONG, None, Settings())
+        _, result = taa(now, self.STILL, self.LONG, history, Settings(alpha_taa=0.25))
         patch = current[3:6, 4:7].reshape(9, 3)
         clamped = np.clip(history[4, 5], patch.min(axis=0), patch.max(axis=0))
         assert_allclose(result[4, 5], 0.75 * clamped + 0.25 * current[4, 5])
 
     def test_old_light_is_clamped_away(self) -> None:
-        _, history = taa(np.full((*SHAPE, 3), 100.0), self.STILL, None, Settings())
-        assert_allclose(taa(np.full((*SHAPE, 3), 0.5), self.STILL, history, Settings())[0], 0.5)
+        _, history = taa(np.full((*SHAPE, 3), 100.0), self.STILL, self.LONG, None, Settings())
+        assert_allclose(taa(np.full((*SHAPE, 3), 0.5), self.STILL, self.LONG, history, Settings())[0], 0.5)
 
     @pytest.mark.parametrize(("shift", "known"), [(-0.5, True), (-0.51, False), (0.49, True), (0.5, False)])
     def test_history_ends_half_a_pixel_outside(self, shift: float, known: bool) -> None:
         edge = 0 if shift < 0 else -1
         image = np.ones((*SHAPE, 3))
         image[:, edge] = 0.5
-        _, history = taa(np.ones((*SHAPE, 3)), self.STILL, None, Settings())
+        _, history = taa(np.ones((*SHAPE, 3)), self.STILL, self.LONG, None, Settings())
         out, _ = taa(
-            image, replace(self.STILL, motion=self.STILL.motion + np.array((shift, 0, 0))), history, Settings()
+            image,
+            replace(self.STILL, motion=self.STILL.motion + np.array((shift, 0, 0))),
+            self.LONG,
+            history,
+            Settings(),
         )
         assert (out[0, edge] > 0.6).all() == known
+
+    def test_what_was_uncovered_has_no_history(self, rng: np.random.Generator) -> None:
+        before, now = rng.random((2, *SHAPE, 3))
+        _, history = taa(before, self.STILL, self.LONG, None, Settings())
+        assert_allclose(taa(now, self.STILL, np.ones(SHAPE), history, Settings())[0], now)
 
     def test_a_ramp_is_resampled_exactly(self) -> None:
         ramp = np.linspace(0.2, 0.6, SHAPE[1])[:, None] * np.ones((*SHAPE, 1))
@@ -401,7 +411,7 @@ class TestTaa:
         depth, motion = np.full(SHAPE, 5.0), np.zeros((*SHAPE, 3))
         depth[:, 4:], motion[:, 4:, 0] = 2.0, 1.0
         depth[0], motion[0] = 0.0, 7.0
-        motion = foremost_motion(replace(self.STILL, depth=depth, motion=motion))
+        motion = motion[foremost(replace(self.STILL, depth=depth))]
         assert_array_equal(motion[2:, :3, 0], 0)
         assert_array_equal(motion[2:, 3:, 0], 1)
         assert_array_equal(motion[0, :3, 0], 0)
