@@ -116,7 +116,7 @@ class Demo:
         for number in self.compared:
             labels = {
                 "noisy": "noisy, 1 spp",
-                "denoised": "denoised",
+                "denoised": "denoised" if number else "denoised, first frame: no history",
                 "reference": f"reference, {self.reference_spp} spp",
             }
             panels = {label: to_bytes(read_picture(self.path(kind, number))) for kind, label in labels.items()}

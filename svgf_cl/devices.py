@@ -30,7 +30,7 @@ SIMULATOR = "Oclgrind"
 
 INSTALL_HINT = """Install one of:
   Debian, Ubuntu:       apt-get install pocl-opencl-icd
-  x86-64 Linux, no root: pip install 'svgf_cl[cpu]'
+  x86-64 Linux, no root: pip install '.[cpu]' in a clone of svgf_cl
   a GPU:                its vendor's driver with OpenCL"""
 
 

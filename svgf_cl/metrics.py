@@ -81,7 +81,7 @@ def require_ssim() -> None:
     try:
         import skimage.metrics  # noqa: F401
     except ModuleNotFoundError as error:
-        raise SvgfError(f"SSIM needs scikit-image ({error}): pip install 'svgf_cl[metrics]'") from error
+        raise SvgfError(f"SSIM needs scikit-image ({error}): pip install '.[metrics]' in a clone of svgf_cl") from error
 
 
 def relmse(picture: Linear, reference: Linear) -> float:

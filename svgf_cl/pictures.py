@@ -20,7 +20,7 @@ def write_preview(path: Path, pictures: Iterable[Bytes], fps: float = 12.0) -> N
     first, *rest = (Image.fromarray(picture) for picture in pictures)
     with written_whole(path) as aside:
         first.save(
-            aside, format="WEBP", save_all=True, append_images=rest, duration=round(1000 / fps), loop=0, quality=80
+            aside, format="WEBP", save_all=True, append_images=rest, duration=round(1000 / fps), loop=0, quality=92
         )
 
 

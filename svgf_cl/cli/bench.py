@@ -20,9 +20,9 @@ def bench(
     ] = 1,
     set_: SettingTexts = [],  # noqa: B006
 ) -> None:
-    """Time every pass and the whole frame; show the error against the float64 oracle.
+    """Time every pass, and show the error.
 
-    Input is the camera moving in a built-in room, with albedo and ids. Pass times come from OpenCL events; "device" is
+    The error is that against the float64 oracle. Input is the camera moving in a built-in room, with albedo and ids. Pass times come from OpenCL events; "device" is
     their sum, "frame" is the whole call with numpy arrays in and out, copies included.
 
     \b

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,10 +14,16 @@ if TYPE_CHECKING:
 
 def require_tracer() -> None:
     """Raise `SvgfError`, with the command that installs it, where the tracer or something it needs is missing."""
+    # trimesh swallows KeyboardInterrupt while it is being imported: until then Ctrl-C ends the process by itself.
+    interrupt = signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:
         import tracer  # noqa: F401
     except ModuleNotFoundError as error:
-        raise SvgfError(f"rendering needs the tracer ({error}): pip install 'svgf_cl[tracer]'") from error
+        raise SvgfError(
+            f"rendering needs the tracer ({error}): pip install '.[tracer]' in a clone of svgf_cl"
+        ) from error
+    finally:
+        signal.signal(signal.SIGINT, interrupt)
 
 
 def open_scene(name: str, sky: tuple[float, float, float] | None) -> Scene:
