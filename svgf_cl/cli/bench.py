@@ -22,8 +22,9 @@ def bench(
 ) -> None:
     """Time every pass, and show the error.
 
-    The error is that against the float64 oracle. Input is the camera moving in a built-in room, with albedo and ids. Pass times come from OpenCL events; "device" is
-    their sum, "frame" is the whole call with numpy arrays in and out, copies included.
+    The error is that against the float64 oracle. Input is the camera moving in a built-in room, with albedo and ids.
+    Pass times come from OpenCL events; "device" is their sum, "frame" is the whole call with numpy arrays in and out,
+    copies included.
 
     \b
     Examples:
