@@ -25,8 +25,9 @@ lint: $(READY)  ## check style, types and kernels (needs clang)
 bench: device  ## time every pass at 1280x720, beside the error
 	$(BIN)/svgf-cl bench
 
-docs: device  ## measure again what docs/accuracy.md says
+docs: demo  ## make docs/accuracy.md and the picture of README again
 	$(BIN)/python benchmarks/accuracy.py
+	$(BIN)/python scripts/picture.py
 
 clean:  ## remove what the other targets made
 	rm -rf .venv build *.egg-info .*_cache
