@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from typing import Any, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
 
+from svgf_cl import __version__
 from svgf_cl.cli import bench, compare, demo, denoise, devices, render
 from svgf_cl.errors import SvgfError
 
 # Plain help and errors: they read the same in a terminal, in a log and through grep.
 app = typer.Typer(
-    help="A denoiser for path-traced animation (SVGF) on any OpenCL device.",
+    invoke_without_command=True,
     epilog="Exit codes: 0 fine; 1 a comparison failed or a run broke off; 2 wrong input.",
     add_completion=False,
     rich_markup_mode=None,
@@ -21,6 +22,17 @@ app = typer.Typer(
 )
 for command in (devices.devices, demo.demo, render.render, denoise.denoise, compare.compare, bench.bench):
     app.command()(command)
+
+
+@app.callback()
+def common(
+    version: Annotated[bool, typer.Option("--version", help="Show the version and exit.", is_eager=True)] = False,
+) -> None:
+    """A denoiser for path-traced animation (SVGF) on any OpenCL device."""
+    if version:
+        print(f"svgf-cl {__version__}")
+        raise typer.Exit
+
 
 # typer has no name of its own for it: every option and argument it cannot make sense of.
 UsageError: type[Any] = typer.BadParameter.__mro__[1]

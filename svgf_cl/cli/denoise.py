@@ -16,7 +16,7 @@ from svgf_cl.denoiser import Denoiser
 from svgf_cl.display import to_bytes, write_png
 from svgf_cl.errors import SequenceError
 from svgf_cl.files import make_folder
-from svgf_cl.sequence import find_frames, read_sequence, write_picture
+from svgf_cl.sequence import check_leftovers, find_frames, read_sequence, write_picture
 from svgf_cl.settings import Settings
 
 
@@ -44,6 +44,7 @@ def denoise(
     settings = parse_settings(set_)
     sources = find_frames(frames)
     targets = target_paths(sources, make_folder(output))
+    check_leftovers(output, {target.with_suffix(suffix) for target in targets for suffix in (".exr", ".png")})
     profiles = []
     for target, picture, profile in tracked(denoised(sources, targets, settings), len(sources), "denoising"):
         write_picture(target, picture)

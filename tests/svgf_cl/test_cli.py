@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl import Settings, SettingsError
+from svgf_cl import Settings, SettingsError, __version__
 from svgf_cl.cli import main
 from svgf_cl.cli.options import parse_settings, settings_help
 from svgf_cl.sequence import (
@@ -251,6 +251,17 @@ def test_frames_of_an_earlier_run_are_not_mixed_in(frames: Path, refused) -> Non
     for name in NAMES:
         (frames / name).unlink()
     refused("reference.0000.exr: left by", "render", "cornell", "--frames", "3", "--size", "32x18", "-o", frames)
+
+
+def test_pictures_of_an_earlier_run_are_not_mixed_in(frames: Path, tmp_path: Path, refused) -> None:
+    assert run("denoise", frames, "-o", tmp_path / "clean", "--png") == 0
+    assert run("denoise", frames, "-o", tmp_path / "clean", "--png") == 0
+    refused("left by an earlier run", "denoise", frames / NAMES[0], "-o", tmp_path / "clean")
+
+
+def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("--version") == 0
+    assert capsys.readouterr().out == f"svgf-cl {__version__}\n"
 
 
 def test_missing_and_empty_input(tmp_path: Path, refused) -> None:
