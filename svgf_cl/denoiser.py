@@ -45,7 +45,7 @@ class Plan:
 
 
 class Denoiser:
-    """Denoises a sequence of frames of one size, one call a frame.
+    """Denoises a sequence of frames of one size, one call a frame; for one thread at a time.
 
     Parameters
     ----------
