@@ -98,7 +98,7 @@ class Demo:
         """Render the references of the compared frames; `advance` is called after each sample per pixel."""
         make_folder(self.folder / "reference")
         for number in self.compared:
-            camera = self.scene.camera_path.at(number / max(self.frames - 1, 1))
+            camera = self.scene.camera_path.at_frame(number, self.frames)
             picture = tracer.render_reference(
                 self.scene, camera, self.shape, spp=self.reference_spp, progress=lambda *_: advance()
             )

@@ -83,6 +83,7 @@ class Denoiser:
         self._layout = layout_of(self.shape)
         self._vector_width = devices.vector_width(self.queue.device)
         self._work_group = GPU_WORK_GROUP if self._vector_width == 1 else WORK_GROUP
+        self._work_items = self._layout.work_items(self._vector_width, self._work_group)
         self._keep_stages = keep_stages
         self._uploads = Uploads(self.queue)
         self._plan: Plan | None = None
@@ -185,26 +186,24 @@ class Denoiser:
         """The plan for these inputs, made on the first frame: kernels built, history blank."""
         if self._plan is None:
             passes = pipeline(inputs, self.settings)
-            launches = tuple(self._launch(step, inputs) for step in passes)
+            launches = tuple(self._launch(entry, inputs) for entry in passes)
             planes = Buffers(self.queue, self._layout, passes, inputs, share=not self._keep_stages)
             self._plan = Plan(inputs, launches, planes, stage_views(passes, inputs, self.settings.iterations))
         if inputs != self._plan.inputs:
             raise FrameError("fields", f"{self._plan.inputs} as before, or a call of reset", str(inputs))
         return self._plan
 
-    def _launch(self, step: Pass, inputs: Inputs) -> Launch:
+    def _launch(self, entry: Pass, inputs: Inputs) -> Launch:
         defines = {"VW": self._vector_width, **inputs.defines, **self.settings.defines}
-        program = programs.build(self.queue.context, self.queue.device, step.stage, defines)
-        scalars = [] if step.step is None else [np.int32(step.step)]
-        scalars += [np.float32(getattr(self.settings, name)) for name in step.settings]
-        return Launch(step, cl.Kernel(program, step.kernel), (self._layout.size, *scalars))
+        program = programs.build(self.queue.context, self.queue.device, entry.stage, defines)
+        scalars = [] if entry.step is None else [np.int32(entry.step)]
+        scalars += [np.float32(getattr(self.settings, name)) for name in entry.settings]
+        return Launch(entry, cl.Kernel(program, entry.kernel), (self._layout.size, *scalars))
 
     def _run(self, launch: Launch, planes: Buffers, user: dict[str, cl.Buffer]) -> cl.Event:
         names = (*launch.entry.reads, *launch.entry.writes)
         arguments = [user[name] if name in user else planes[name] for name in names]
-        vectors = (-(-self._layout.width // self._vector_width), self._layout.height)
-        whole = tuple(-(-n // group) * group for n, group in zip(vectors, self._work_group, strict=True))
-        return launch.kernel(self.queue, whole, self._work_group, *launch.constants, *arguments)
+        return launch.kernel(self.queue, self._work_items, self._work_group, *launch.constants, *arguments)
 
     def _result(self, frame: Frame) -> Any:
         """A new array for the result, of the same kind as the frame's."""

@@ -65,7 +65,7 @@ class Frame:
     indirect: Any = None
 
     def present(self) -> dict[str, Any]:
-        """The fields that were given, by name, in the order of `CHANNELS`."""
+        """The fields that were given, by name."""
         return {f.name: value for f in fields(self) if (value := getattr(self, f.name)) is not None}
 
     @property

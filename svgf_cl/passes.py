@@ -165,7 +165,7 @@ def atrous_levels(iterations: int) -> Iterator[Pass]:
 
 def level_buffer(level: int) -> str:
     """Buffer that holds the illumination after so many a-trous levels."""
-    return ("accumulated", *HISTORY)[level] if level < 2 else f"level {level}"
+    return {0: "accumulated", 1: "history"}.get(level, f"level {level}")
 
 
 def persistent_buffers(passes: tuple[Pass, ...]) -> list[str]:

@@ -38,6 +38,11 @@ class Layout:
         """Elements of a plane."""
         return self.rows * self.pitch
 
+    def work_items(self, vector_width: int, group: tuple[int, int]) -> tuple[int, int]:
+        """Vectors along a row and rows, each rounded up to whole work-groups; kernels skip those outside the image."""
+        vectors = -(-self.width // vector_width)
+        return -(-vectors // group[0]) * group[0], -(-self.height // group[1]) * group[1]
+
     @property
     def indexable(self) -> bool:
         """Whether the kernels' 32-bit indices reach every element of the largest buffer."""

@@ -144,6 +144,10 @@ class CameraPath:
         values = _catmull_rom(padded[int(segment) : int(segment) + 4], s)
         return Camera(vector(values[0:3]), vector(values[3:6]), vector(values[6:9]), float(values[9]))
 
+    def at_frame(self, number: int, frames: int) -> Camera:
+        """The camera of frame `number`, from 0, in a sequence of so many that covers the whole path."""
+        return self.at(number / max(frames - 1, 1))
+
 
 def _rotate(matrix: Float64, vectors: Float64) -> Float64:
     """`matrix` (3, 3) times each of `vectors` (3, N), without BLAS: its rounding may hang on the number of threads."""

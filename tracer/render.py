@@ -46,7 +46,7 @@ def render_sequence(
     """
     previous = None
     for index in range(frames):
-        camera = path.at(index / max(frames - 1, 1))
+        camera = path.at_frame(index, frames)
         yield render_frame(
             scene, camera, previous, size, frame_index=index, spp=spp, jitter=jitter, seed=seed, bounces=bounces
         )

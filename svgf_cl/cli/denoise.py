@@ -44,7 +44,7 @@ def denoise(
     settings = parse_settings(set_)
     sources = find_frames(frames)
     targets = target_paths(sources, make_folder(output))
-    check_leftovers(output, {target.with_suffix(suffix) for target in targets for suffix in (".exr", ".png")})
+    check_leftovers(output, targets)
     profiles = []
     for target, picture, profile in tracked(denoised(sources, targets, settings), len(sources), "denoising"):
         write_picture(target, picture)

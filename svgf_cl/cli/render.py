@@ -62,7 +62,7 @@ def render(
         write_frame(frame_path(folder, number), frame)
     with progress_bar("references", total=frames * reference_spp) as advance:
         for number in range(frames if reference_spp else 0):
-            view = path.at(number / max(frames - 1, 1))
+            view = path.at_frame(number, frames)
             picture = render_reference(
                 world, view, shape, spp=reference_spp, seed=seed, bounces=bounces, progress=lambda *_: advance()
             )
