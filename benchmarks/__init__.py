@@ -1,0 +1,1 @@
+"""Programs that measure svgf_cl; run them from the root of a clone."""
