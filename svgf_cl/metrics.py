@@ -1,14 +1,18 @@
-"""How far a picture is from its reference: PSNR and SSIM of what is shown, relMSE of the light itself.
+"""How far a picture is from its reference: as shown (PSNR, SSIM, FLIP), in light (relMSE), and over time.
 
-======  ==================  ==========================================================================================
-metric  computed on         definition
-======  ==================  ==========================================================================================
-PSNR    display-referred    ``-10 log10(mean((a - b)**2))`` over all pixels and channels, in dB; inf where equal
-SSIM    display-referred    mean structural similarity of the channels, Gaussian window of sigma 1.5, as in Wang et
+========  ================  ==========================================================================================
+metric    computed on       definition
+========  ================  ==========================================================================================
+PSNR      display-referred  ``-10 log10(mean((a - b)**2))`` over all pixels and channels, in dB; inf where equal
+SSIM      display-referred  mean structural similarity of the channels, Gaussian window of sigma 1.5, as in Wang et
                             al. 2004 (scikit-image's ``structural_similarity``); 1 where equal
-relMSE  linear HDR          ``mean((a - b)**2 / (b**2 + 0.01))``, `b` the reference, as in Rousselle et al. 2011; 0
+FLIP      display-referred  mean difference seen when flipping between the two, at 67 pixels a degree: LDR-FLIP of
+                            Andersson et al. 2020 (NVIDIA's ``flip-evaluator``); 0..1, 0 where equal
+relMSE    linear HDR        ``mean((a - b)**2 / (b**2 + 0.01))``, `b` the reference, as in Rousselle et al. 2011; 0
                             where equal; one bright dot can outweigh all else
-======  ==================  ==========================================================================================
+temporal  display-referred  ``mean(|(a1 - a0) - (b1 - b0)|)`` over two consecutive frames: flicker and lag; the temporal
+                            loss of Chaitanya et al. 2017; 0 where the error stands still
+========  ================  ==========================================================================================
 
 Display-referred: exposed, clipped to 0..1 and sRGB-encoded (`svgf_cl.display.display`). NaN in a picture makes its
 metrics NaN.
@@ -82,6 +86,33 @@ def require_ssim() -> None:
         import skimage.metrics  # noqa: F401
     except ModuleNotFoundError as error:
         raise SvgfError(f"SSIM needs scikit-image ({error}): pip install '.[metrics]' in a clone of svgf_cl") from error
+
+
+def flip(shown: Linear, wanted: Linear) -> float:
+    """Return the mean FLIP error of two display-referred pictures."""
+    require_flip()
+    import flip_evaluator
+
+    if np.isnan(shown).any() or np.isnan(wanted).any():
+        return float("nan")  # the library scores a NaN like a colour
+    _, error, _ = flip_evaluator.evaluate(
+        np.asarray(wanted, np.float32), np.asarray(shown, np.float32), "LDR", applyMagma=False
+    )
+    return float(error)
+
+
+def require_flip() -> None:
+    """Raise `SvgfError`, with the command that installs it, where NVIDIA's evaluator is missing."""
+    try:
+        import flip_evaluator  # noqa: F401
+    except ModuleNotFoundError as error:
+        raise SvgfError(f"FLIP needs flip-evaluator ({error}): pip install '.[bench]' in a clone of svgf_cl") from error
+
+
+def temporal_error(shown: tuple[Linear, Linear], wanted: tuple[Linear, Linear]) -> float:
+    """Return how much the error changes between two consecutive display-referred pictures, earlier one first."""
+    change, truth = shown[1] - shown[0], wanted[1] - wanted[0]
+    return float(np.mean(np.abs(change - truth)))
 
 
 def relmse(picture: Linear, reference: Linear) -> float:

@@ -129,6 +129,8 @@ def render_reference(
     spp: int,
     seed: int = 0,
     bounces: int = 1,
+    jitter: bool = True,
+    rows: tuple[int, int] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Float32:
     """Render what the frames converge to: the mean radiance over each pixel's square.
@@ -139,33 +141,41 @@ def render_reference(
         As in `render_frame`. No noise is shared with a frame of the same seed.
     spp : int
         Samples per pixel, >= 1.
+    jitter : bool
+        False: what frames without jitter converge to, the radiance at each pixel's centre.
+    rows : (int, int), optional
+        First row and the one after the last, of those to render; all by default.
     progress : callable, optional
         Called with (samples done, `spp`) after each sample of the image.
 
     Returns
     -------
     (H, W, 3) float32
-        Linear radiance.
+        Linear radiance; H counts the rendered rows.
 
     Raises
     ------
     SceneError
         A number is out of its range.
     """
+    first, end = rows or (0, shape[0])
     _check(shape, spp=(spp, 1), seed=(seed, 0), bounces=(bounces, 0))
+    if not 0 <= first < end <= shape[0]:
+        raise SceneError(f"rows: expected 0 <= first < end <= {shape[0]}, got {rows}")
+    window = end - first, shape[1]
 
     def trace(job: tuple[int, slice]) -> tuple[int, slice, Float32]:
         sample, tile = job
         random = random_stream(REFERENCE, seed, sample, tile.start)
-        x, y = _pixels(tile, shape) + random.random((2, tile.stop - tile.start)) - 0.5
-        return sample, tile, View.through(scene, camera, x, y, shape).radiance(random, bounces).sum(0)
+        x, y = _pixels(tile, window) + (random.random((2, tile.stop - tile.start)) - 0.5 if jitter else 0.0)
+        return sample, tile, View.through(scene, camera, x, y + first, shape).radiance(random, bounces).sum(0)
 
-    total = np.zeros((3, shape[0] * shape[1]))
-    for sample, tile, radiance in _in_threads(trace, _jobs(spp, shape)):
+    total = np.zeros((3, window[0] * window[1]))
+    for sample, tile, radiance in _in_threads(trace, _jobs(spp, window)):
         total[:, tile] += radiance
         if progress and tile.stop == total.shape[1]:
             progress(sample + 1, spp)
-    return _image((total / spp).astype(np.float32), shape)
+    return _image((total / spp).astype(np.float32), window)
 
 
 def _jobs(spp: int, shape: Shape) -> list[tuple[int, slice]]:

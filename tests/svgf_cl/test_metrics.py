@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import astuple
 
 import numpy as np
@@ -46,6 +47,43 @@ def test_nan_is_never_a_good_score() -> None:
     broken[0, 0, 0] = np.nan
     found = metrics.measure(broken, grey(0.5))
     assert all(map(math.isnan, astuple(found)))
+
+
+def test_flip_tells_equal_from_opposite() -> None:
+    pytest.importorskip("flip_evaluator")
+    assert metrics.flip(grey(0.5), grey(0.5)) == 0
+    assert metrics.flip(grey(0.0), grey(1.0)) == pytest.approx(1, abs=0.05)
+    assert 0 < metrics.flip(grey(0.50), grey(0.52)) < metrics.flip(grey(0.5), grey(0.6))
+
+
+def test_flip_of_nan_is_nan() -> None:
+    pytest.importorskip("flip_evaluator")
+    broken = grey(0.5)
+    broken[0, 0, 0] = np.nan
+    assert math.isnan(metrics.flip(broken, grey(0.5)))
+    assert math.isnan(metrics.flip(grey(0.5), broken))
+
+
+def test_without_its_library_flip_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "flip_evaluator", None)
+    with pytest.raises(SvgfError, match=r"pip install '\.\[bench\]'"):
+        metrics.flip(grey(0.5), grey(0.5))
+
+
+def test_an_error_that_stands_still_is_no_temporal_error() -> None:
+    first, second = RNG.random((2, 16, 18, 3))
+    assert metrics.temporal_error((first + 0.1, second + 0.1), (first, second)) == pytest.approx(0)
+
+
+def test_temporal_error_is_what_the_error_changes_by() -> None:
+    # Too bright by 0.1, then too dark by 0.2, in a quarter of the values.
+    truth = np.full((16, 16, 3), 0.5)
+    earlier, later = truth.copy(), truth.copy()
+    earlier[:4] += 0.1
+    later[:4] -= 0.2
+    assert metrics.temporal_error((earlier, later), (truth, truth)) == pytest.approx(0.3 / 4)
+    # The truth moves and the picture lags.
+    assert metrics.temporal_error((truth, truth), (truth, truth + 0.3)) == pytest.approx(0.3)
 
 
 def test_noise_lowers_every_metric() -> None:

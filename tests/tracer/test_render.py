@@ -73,6 +73,26 @@ def test_a_reference_is_what_frames_converge_to_and_shares_no_noise_with_them() 
     assert not np.array_equal(single, render_reference(ROOM, VIEW, SHAPE, spp=1))
 
 
+def test_a_reference_without_jitter_is_what_frames_without_jitter_converge_to() -> None:
+    reference = render_reference(ROOM, VIEW, SHAPE, spp=64, jitter=False)
+    frame = render_frame(ROOM, VIEW, None, SHAPE, spp=64, jitter=False).color
+    area = render_reference(ROOM, VIEW, SHAPE, spp=64, seed=1)
+    assert np.square(reference - frame).mean() < 0.7 * np.square(reference - area).mean()
+
+
+def test_rows_of_a_reference_are_those_of_the_whole() -> None:
+    # Within the first tile the noise is the same where the first row is; elsewhere only the mean is.
+    whole = render_reference(ROOM, VIEW, SHAPE, spp=32)
+    np.testing.assert_array_equal(render_reference(ROOM, VIEW, SHAPE, spp=32, rows=(0, 45)), whole)
+    band = render_reference(ROOM, VIEW, SHAPE, spp=32, rows=(20, 30))
+    assert band.shape == (10, 80, 3)
+    errors = {first: np.square(band - whole[first : first + 10]).mean() for first in (19, 20, 21)}
+    assert min(errors, key=errors.__getitem__) == 20
+    for rows in ((-1, 5), (5, 5), (40, 46)):
+        with pytest.raises(SceneError, match="rows: expected 0 <= first < end <= 45"):
+            render_reference(ROOM, VIEW, SHAPE, spp=1, rows=rows)
+
+
 def test_a_reference_reports_its_progress() -> None:
     seen: list[tuple[int, int]] = []
     render_reference(ROOM, VIEW, (170, 200), spp=3, progress=lambda done, total: seen.append((done, total)))

@@ -1,0 +1,115 @@
+"""Noisy sequences and what they converge to; the converged pictures are kept, for they cost minutes."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+import tracer
+from svgf_cl.cache import cache_folder
+from svgf_cl.display import Linear
+from svgf_cl.files import make_folder
+from svgf_cl.frame import Frame, Shape
+from svgf_cl.sequence import read_picture, write_picture
+
+# Samples per pixel rendered at once: the progress bar's step.
+PART = 32
+
+
+@dataclass(frozen=True)
+class Footage:
+    """A camera moving through a built-in scene at 1 sample per pixel, and the truth about part of its last two frames.
+
+    Two frames in a row, for the temporal error; the last, because history is longest there. Of these a band of rows, so
+    that a large picture's truth can be had in minutes. Each truth is rendered as two independent halves: what they
+    differ by is its own noise.
+
+    Parameters
+    ----------
+    name : str
+        What the truth is the light of.
+    jitter : bool
+        True: rays go through another point of the pixel in every frame, and the truth is the mean over the pixel's
+        area. False: all rays, the truth's too, go through the pixel's centre, so that there is nothing to antialias.
+    scene : str
+        Name of a built-in scene.
+    shape : (int, int)
+        (height, width) in pixels.
+    band : (float, float)
+        Where the judged rows begin and end, in picture heights. In the Cornell box these cross walls, a deep shadow,
+        the ball, the ring, both blocks, the lattice and the tiles.
+    frames : int, >= 2
+    spp : int, a multiple of 2 * PART
+        Samples per pixel of the truth.
+    """
+
+    name: str
+    jitter: bool
+    scene: str = "cornell"
+    shape: Shape = (720, 1280)
+    band: tuple[float, float] = (0.66, 0.78)
+    frames: int = 24
+    spp: int = 512
+
+    @property
+    def judged(self) -> tuple[int, int]:
+        """The numbers of the frames that have a truth."""
+        return self.frames - 2, self.frames - 1
+
+    @property
+    def rows(self) -> tuple[int, int]:
+        """First judged row, and the one after the last."""
+        first, end = (round(share * self.shape[0]) for share in self.band)
+        return first, end
+
+    @property
+    def parts_to_render(self) -> int:
+        """How often `halves` will call `advance`."""
+        missing = [path for number in self.judged for half in (0, 1) if not (path := self._path(number, half)).exists()]
+        return len(missing) * self.spp // (2 * PART)
+
+    def noisy(self) -> Iterator[Frame]:
+        """The frames to denoise."""
+        return tracer.render_sequence(self._world, self._world.camera_path, self.shape, self.frames, jitter=self.jitter)
+
+    def halves(self, advance: Callable[[], None]) -> list[tuple[Linear, Linear]]:
+        """Two independent halves of the truth of each judged frame, rendered unless kept from an earlier run."""
+        return [(self._half(number, 0, advance), self._half(number, 1, advance)) for number in self.judged]
+
+    @property
+    def folder(self) -> Path:
+        """Where the halves are kept: another one for other parameters or another tracer."""
+        digest = hashlib.sha256(repr(self).encode())
+        for source in sorted(Path(tracer.__file__).parent.glob("*.py")):
+            digest.update(source.read_bytes())
+        return cache_folder() / "references" / digest.hexdigest()[:16]
+
+    @cached_property
+    def _world(self) -> tracer.Scene:
+        return tracer.builtin_scene(self.scene)
+
+    def _path(self, number: int, half: int) -> Path:
+        return self.folder / f"frame.{number:04d}.half{half}.exr"
+
+    def _half(self, number: int, half: int, advance: Callable[[], None]) -> Linear:
+        path = self._path(number, half)
+        if not path.exists():
+            make_folder(self.folder)
+            camera = self._world.camera_path.at_frame(number, self.frames)
+            seeds = range(half, self.spp // PART, 2)
+            total: Linear = np.zeros(())
+            for seed in seeds:
+                total = total + tracer.render_reference(
+                    self._world, camera, self.shape, spp=PART, seed=seed, jitter=self.jitter, rows=self.rows
+                )
+                advance()
+            write_picture(path, total / len(seeds))
+        return read_picture(path)
+
+
+FOOTAGE = (Footage("area", jitter=True), Footage("centre", jitter=False))

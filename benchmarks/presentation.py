@@ -1,0 +1,150 @@
+"""Results as rows of a table and as a plot, the Pareto front of time and each error marked in both."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from benchmarks.measurements import Quality, Result
+from benchmarks.pareto import pareto_front
+from svgf_cl.files import written_whole
+
+# Beside a figure: nothing measured is both faster and better.
+MARK = "•"
+
+
+@dataclass(frozen=True)
+class Column:
+    """A kind of error, and how it is spelt.
+
+    Parameters
+    ----------
+    title : str
+        With an arrow that points to where the better figures are.
+    of : callable
+        The figure of a result; NaN where it was not measured.
+    spec : str
+        Its format. The front is that of the figures as printed: a difference that does not show puts nothing on it.
+    plotted : bool
+    """
+
+    title: str
+    of: Callable[[Result], float]
+    spec: str
+    plotted: bool = True
+
+    def text(self, result: Result) -> str:
+        """The figure as printed."""
+        value = self.of(result)
+        return "" if math.isnan(value) else format(value, self.spec)
+
+    def cost(self, result: Result) -> float:
+        """The printed figure, turned so that less is better."""
+        value = float(self.text(result))
+        return -value if "↑" in self.title else value
+
+    def front(self, results: Sequence[Result]) -> list[Result]:
+        """The results on the Pareto front of device time and this error, the fastest first."""
+        measured = [result for result in results if self.text(result)]
+        points = [(float(milliseconds(result.times.device)), self.cost(result)) for result in measured]
+        return [measured[index] for index in pareto_front(points)]
+
+
+def oracle_column() -> Column:
+    """Difference from the oracle."""
+    return Column("oracle rms ↓", lambda result: result.oracle_rms, ".1e")
+
+
+def quality_columns(footage: str) -> list[Column]:
+    """Errors against the truth of the footage of that name."""
+
+    def of(metric: str) -> Callable[[Result], float]:
+        return lambda result: getattr(result.quality.get(footage), metric, math.nan)
+
+    return [
+        Column(f"{footage} PSNR dB ↑", of("psnr"), ".2f"),
+        Column(f"{footage} relMSE ↓", of("relmse"), ".4f", plotted=False),
+        Column(f"{footage} FLIP ↓", of("flip"), ".4f"),
+        Column(f"{footage} temporal ↓", of("temporal"), ".4f"),
+    ]
+
+
+def milliseconds(time: float) -> str:
+    """A time as printed."""
+    return f"{time:.1f}"
+
+
+def table(results: Sequence[Result], columns: Sequence[Column]) -> tuple[list[str], list[list[str]]]:
+    """Headings and rows, one a variant that has any of the figures; those on their Pareto front are marked."""
+    fronts = [column.front(results) for column in columns]
+
+    def row(number: int, result: Result) -> list[str]:
+        marks = [f" {MARK}" if result in front else "" for front in fronts]
+        errors = [column.text(result) + mark for column, mark in zip(columns, marks, strict=True)]
+        times = [milliseconds(result.times.device), milliseconds(result.times.frame)]
+        return [f"{number} {result.variant.name}", *times, *errors]
+
+    headings = ["variant", "device ms", "frame ms", *(column.title for column in columns)]
+    measured = [pair for pair in enumerate(results, 1) if any(column.text(pair[1]) for column in columns)]
+    return headings, [row(*pair) for pair in measured]
+
+
+def markdown(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A markdown table."""
+    lines = [headings, ["---"] * len(headings), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
+
+
+def plot(results: Sequence[Result], noise: dict[str, Quality], title: str, path: Path) -> None:
+    """Write a PNG: a row of panels for each footage, then the oracle's panel and the names."""
+    shown = {name: [column for column in quality_columns(name) if column.plotted] for name in noise}
+    width = 1 + max(len(columns) for columns in shown.values())
+    figure = Figure(figsize=(4 * width, 4 * len(shown)), layout="constrained")
+    grid = figure.subplots(len(shown), width, squeeze=False)
+    for line, columns in zip(grid, shown.values(), strict=True):
+        for axes, column in zip(line, columns, strict=False):
+            panel(axes, column, results)
+    panel(grid[0, -1], oracle_column(), results)
+    grid[0, -1].set_yscale("log")  # storage in 16 bits loses thousands of times what arithmetic does
+    for axes in grid[1:, -1]:
+        axes.axis("off")
+    names(grid[-1, -1], results)
+    figure.suptitle(title)
+    with written_whole(path) as aside:
+        figure.savefig(aside, format="png", dpi=110)
+
+
+def panel(axes: Axes, column: Column, results: Sequence[Result]) -> None:
+    """Draw every result by its number, the front joined by steps, the default in red."""
+    front = column.front(results)
+    axes.step(
+        [result.times.device for result in front], [column.of(result) for result in front], where="post", color="grey"
+    )
+    for number, result in enumerate(results, 1):
+        if not column.text(result):
+            continue
+        place = result.times.device, column.of(result)
+        color = "tab:red" if number == 1 else "tab:blue"
+        fill = color if result in front else "white"
+        axes.plot(*place, "o", color=color, markerfacecolor=fill)
+        axes.annotate(str(number), place, (5, 4), textcoords="offset points")
+    axes.set_xlabel("device ms a frame")
+    axes.set_ylabel(column.title)
+    axes.margins(0.12)
+    axes.grid(alpha=0.3)
+
+
+def names(axes: Axes, results: Sequence[Result]) -> None:
+    """Say which number is which variant, and what the markers mean."""
+    handles = [
+        Line2D([], [], marker="o", linestyle="-", color="grey", label="on the Pareto front"),
+        Line2D([], [], marker="o", linestyle="", color="grey", markerfacecolor="white", label="not on it"),
+    ]
+    lines = [f"{number}  {result.variant.name}" for number, result in enumerate(results, 1)]
+    axes.legend(handles=handles, title="\n".join(lines), loc="upper left", alignment="left", frameon=False)

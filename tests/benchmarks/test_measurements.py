@@ -1,0 +1,56 @@
+"""Measurements are of what they say: every variant, its own frames, its own truth."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks import footage, measurements
+from benchmarks.footage import PART, Footage
+from benchmarks.variants import Variant
+from svgf_cl import Settings
+
+VARIANTS = (Variant("plain"), Variant("antialiased", Settings(taa=True)), Variant("split", signals=2))
+CENTRE = Footage("centre", jitter=False, shape=(45, 80), band=(0.6, 0.9), frames=4, spp=2 * PART)
+AREA = Footage("area", jitter=True, shape=(45, 80), band=(0.6, 0.9), frames=4, spp=2 * PART)
+
+
+@pytest.fixture(autouse=True)
+def _cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(footage, "cache_folder", lambda: tmp_path)
+
+
+def test_everything_is_measured_and_progress_adds_up() -> None:
+    pytest.importorskip("flip_evaluator")
+    ticks: list[None] = []
+    expected = measurements.steps(VARIANTS, (AREA, CENTRE), 2)
+    results, noise = measurements.measure(VARIANTS, (AREA, CENTRE), (45, 80), 2, lambda: ticks.append(None))
+    assert len(ticks) == expected
+    assert [result.variant for result in results] == list(VARIANTS)
+    assert [list(result.quality) for result in results] == [["area", "centre"], ["area"], ["area", "centre"]]
+    for result in results:
+        assert min(result.times.device, result.times.frame) > 0
+        assert 0 < result.oracle_rms < result.oracle_largest < 1e-3
+    assert list(noise) == ["area", "centre"]
+    # Even so little truth is cleaner than what is made of 1 sample per pixel.
+    assert noise["centre"].relmse < 1
+
+
+def test_a_variant_is_judged_by_the_rows_and_frames_that_have_a_truth() -> None:
+    split, single = Variant("split", signals=2), Variant("single")
+    pictures = measurements.judged_pictures([split, single], CENTRE, lambda: None)
+    assert list(pictures) == [split, single]
+    assert np.shape(pictures[split]) == (2, 13, 80, 3)
+    assert not np.array_equal(pictures[split], pictures[single])
+
+
+def test_quality_is_the_mean_over_frames_and_the_change_between_them() -> None:
+    pytest.importorskip("flip_evaluator")
+    dark, bright = np.zeros((16, 16, 3)), np.ones((16, 16, 3))
+    found = measurements.quality([dark, dark], [bright, 0.5 * bright])
+    assert found.relmse == pytest.approx((1 / 1.01 + 0.25 / 0.26) / 2)
+    # 0.5 is shown as 0.7353570: the error goes from 1 to that.
+    assert found.psnr == pytest.approx(-20 * np.log10(0.7353570) / 2)
+    assert found.temporal == pytest.approx(1 - 0.7353570)
