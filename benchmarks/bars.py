@@ -25,7 +25,7 @@ class Bar:
     factor: float
 
     def __str__(self) -> str:
-        return f"{self.kind}: {self.rival} / {self.factor:g}"
+        return f"{self.kind}: {self.factor:g} x {self.rival}"
 
     def verdict(self, ratio: Spread) -> str:
         """Say whether the median of the ratios, round by round, reaches the bar."""

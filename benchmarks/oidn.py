@@ -12,44 +12,29 @@ from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Shape
 
 QUALITIES = ("high", "balanced", "fast")
-
-
-class Images:
-    """Memory that filters read and write in place, without a copy: (H, W, 3) float32 each.
-
-    Parameters
-    ----------
-    shape : (int, int)
-        (height, width) in pixels.
-    """
-
-    def __init__(self, shape: Shape) -> None:
-        # Written to at once, or the first filter to touch it would seem to take that memory.
-        self.color, self.albedo, self.normal, self.output = (np.ones((*shape, 3), np.float32) for _ in range(4))
-
-    def load(self, frame: Frame) -> None:
-        """Copy in what a filter reads of `frame`, which must have color and albedo."""
-        self.color[:], self.albedo[:], self.normal[:] = frame.color, frame.albedo, frame.normal
+INPUTS, OUTPUT = ("color", "albedo", "normal"), "output"  # OIDN's names; those of `Frame`, too
 
 
 class Filter:
     """OIDN's filter for path-traced HDR light with albedo and normal, set up and run once: what follows is steady.
 
+    It reads and writes in place, without a copy, images that `load` fills.
+
     Parameters
     ----------
-    images : Images
-        What it reads and writes.
+    shape : (int, int)
+        (height, width) in pixels.
     quality : str
         One of `QUALITIES`.
     threads : int
         >= 1; OIDN takes no more than there are cores.
     clean_aux : bool
-        Tell it that albedo and normal are free of noise; "high" is a larger network then, and "balanced" without.
+        Tell it that albedo and normal are free of noise. "high" is a larger network then; else it is "balanced".
 
     Attributes
     ----------
     nbytes : int
-        What the process grew by: what OIDN holds beside `images`.
+        What the process grew by: what OIDN holds beside the images.
 
     Raises
     ------
@@ -57,19 +42,20 @@ class Filter:
         If a package is missing, or OIDN reports an error.
     """
 
-    def __init__(self, images: Images, quality: str, threads: int, *, clean_aux: bool = False) -> None:
+    def __init__(self, shape: Shape, quality: str, threads: int, *, clean_aux: bool = False) -> None:
         require_oidn()
         import psutil
         import pyoidn
 
         process = psutil.Process()
+        # Ones, not empty: memory counts from when it is first written to.
+        self._images = {name: np.ones((*shape, 3), np.float32) for name in (*INPUTS, OUTPUT)}
         before = process.memory_info().rss
-        self.images = images
         self._device = pyoidn.Device(pyoidn.OIDN_DEVICE_TYPE_CPU)  # one a filter, or they would share their memory
         self._device.set_int("numThreads", threads)
         self._device.commit()
         self._filter = pyoidn.Filter(self._device, pyoidn.OIDN_FILTER_TYPE_RT)
-        for name, image in vars(images).items():
+        for name, image in self._images.items():
             self._filter.set_image(name, image, pyoidn.OIDN_FORMAT_FLOAT3)
         self._filter.set_bool("hdr", True)
         self._filter.set_bool("cleanAux", clean_aux)
@@ -79,8 +65,13 @@ class Filter:
         self.check()
         self.nbytes: int = process.memory_info().rss - before
 
+    def load(self, frame: Frame) -> None:
+        """Copy in what the filter reads of `frame`, which must have color and albedo."""
+        for name in INPUTS:
+            self._images[name][:] = getattr(frame, name)
+
     def execute(self) -> None:
-        """Filter what is in `images`; wait for the end."""
+        """Filter what was loaded; wait for the end."""
         self._filter.execute()
 
     def check(self) -> None:
@@ -90,10 +81,10 @@ class Filter:
 
     def denoise(self, frame: Frame) -> npt.NDArray[np.float32]:
         """Filter one frame; return the result, (H, W, 3), in memory of its own."""
-        self.images.load(frame)
+        self.load(frame)
         self.execute()
         self.check()
-        result: npt.NDArray[np.float32] = self.images.output.copy()
+        result: npt.NDArray[np.float32] = self._images[OUTPUT].copy()
         return result
 
     @property

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.oidn import Filter, Images
+from benchmarks.oidn import Filter
 from svgf_cl import Denoiser
 from svgf_cl.room import PERIOD, room_frames
 
@@ -35,7 +35,7 @@ class Spread:
 
 
 def race(
-    den: Denoiser, images: Images, filters: Mapping[str, Filter], rounds: int, advance: Callable[[], None]
+    den: Denoiser, filters: Mapping[str, Filter], rounds: int, advance: Callable[[], None]
 ) -> dict[str, list[float]]:
     """Let every denoiser filter the same frame of the built-in room, one after the other, round after round.
 
@@ -43,9 +43,8 @@ def race(
     ----------
     den : Denoiser
         Its shape is that of the frames.
-    images : Images
-        What `filters` read and write.
     filters : mapping from name to Filter
+        Of the same shape.
     rounds : int, >= 1
     advance : callable
         Called after each round, for a progress bar.
@@ -63,12 +62,12 @@ def race(
     times: dict[str, list[float]] = {name: [] for name in (WHOLE, DEVICE, *filters)}
     for index in range(rounds):
         frame = inputs[index % PERIOD]
-        images.load(frame)
         begin = time.perf_counter()
         den.denoise(frame, out=out)
         times[WHOLE].append(1e3 * (time.perf_counter() - begin))
         times[DEVICE].append(sum(den.profile().values()))
         for name, rival in filters.items():
+            rival.load(frame)
             begin = time.perf_counter()
             rival.execute()
             times[name].append(1e3 * (time.perf_counter() - begin))

@@ -14,4 +14,4 @@ def test_the_median_decides(median: float, verdict: str) -> None:
 
 
 def test_the_bars_as_they_were_set() -> None:
-    assert [str(bar) for bar in BARS] == ["bar: OIDN high / 15", "bar: OIDN fast / 8", "aim: OIDN fast / 15"]
+    assert [str(bar) for bar in BARS] == ["bar: 15 x OIDN high", "bar: 8 x OIDN fast", "aim: 15 x OIDN fast"]

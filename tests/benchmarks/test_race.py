@@ -6,9 +6,8 @@ import pyopencl as cl
 import pytest
 
 from benchmarks import race
-from benchmarks.oidn import Images
 from benchmarks.race import DEVICE, WHOLE, Spread
-from svgf_cl import Denoiser
+from svgf_cl import Denoiser, Frame
 from svgf_cl.room import PERIOD, room_frames
 
 SHAPE = (9, 16)
@@ -17,11 +16,14 @@ SHAPE = (9, 16)
 class Rival:
     """Stands for a filter of Open Image Denoise: notes its turns and what it was given."""
 
-    def __init__(self, name: str, images: Images, turns: list[tuple[str, float]]) -> None:
-        self.name, self.images, self.turns = name, images, turns
+    def __init__(self, name: str, turns: list[tuple[str, float]]) -> None:
+        self.name, self.turns, self.light = name, turns, 0.0
+
+    def load(self, frame: Frame) -> None:
+        self.light = float(frame.color.sum())
 
     def execute(self) -> None:
-        self.turns.append((self.name, float(self.images.color.sum())))
+        self.turns.append((self.name, self.light))
 
     def check(self) -> None: ...
 
@@ -39,9 +41,9 @@ def test_ratios_are_paired() -> None:
 
 def test_all_take_turns_on_the_same_frame(queue: cl.CommandQueue) -> None:
     rounds = PERIOD + 1
-    images, turns, ticks = Images(SHAPE), [], []
-    rivals = {name: Rival(name, images, turns) for name in "ab"}
-    times = race.race(Denoiser(SHAPE, queue=queue), images, rivals, rounds, lambda: ticks.append(None))
+    turns, ticks = [], []
+    rivals = {name: Rival(name, turns) for name in "ab"}
+    times = race.race(Denoiser(SHAPE, queue=queue), rivals, rounds, lambda: ticks.append(None))
     assert list(times) == [WHOLE, DEVICE, "a", "b"]
     assert {len(samples) for samples in times.values()} == {len(ticks)} == {rounds}
     light = [float(frame.color.sum()) for frame in room_frames(SHAPE, PERIOD)]
@@ -59,13 +61,15 @@ def test_a_time_covers_its_own_turn_only(queue: cl.CommandQueue, monkeypatch: py
             return super().denoise(*args, **kwargs)
 
     class SlowRival(Rival):
+        def load(self, frame: Frame) -> None:
+            now[0] += 10.0
+
         def execute(self) -> None:
             now[0] += 5e-3
 
-    def advance() -> None:
-        now[0] += 100.0
+        def check(self) -> None:
+            now[0] += 10.0
 
-    images = Images(SHAPE)
-    times = race.race(Slow(SHAPE, queue=queue), images, {"a": SlowRival("a", images, [])}, 2, advance)
+    times = race.race(Slow(SHAPE, queue=queue), {"a": SlowRival("a", [])}, 2, lambda: None)
     assert times[WHOLE] == pytest.approx([1, 1])
     assert times["a"] == pytest.approx([5, 5])

@@ -1,23 +1,23 @@
-"""What the comparison prints and writes."""
+"""The comparison as a command: what it prints, writes and refuses."""
 
 from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+import pyopencl as cl
 import pytest
 
-from benchmarks import versus_oidn
-from benchmarks.race import DEVICE, WHOLE
-from benchmarks.versus_oidn import Table, bar_table, ratio_table, time_table
+from benchmarks import footage, versus_oidn
+from benchmarks.footage import PART, Footage
+from benchmarks.race import DEVICE
+from svgf_cl import Denoiser, Frame
+from svgf_cl.room import room_frames
 
-TIMES = {
-    WHOLE: [10.0, 20.0, 10.0],
-    DEVICE: [5.0, 10.0, 5.0],
-    "OIDN high": [140.0, 280.0, 140.0],
-    "OIDN fast": [80.0, 160.0, 80.0],
-}
+FOOTAGE = Footage("area", jitter=True, band=(0.6, 0.9), frames=4, spp=2 * PART)
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *argv: str | Path) -> int:
@@ -28,31 +28,6 @@ def run(monkeypatch: pytest.MonkeyPatch, *argv: str | Path) -> int:
     return int(left.value.code or 0)
 
 
-def test_times_and_memory() -> None:
-    table = time_table("title", TIMES, {WHOLE: 3 << 20, "OIDN fast": 7 << 20})
-    assert table.rows[0] == [WHOLE, "10.0", "10.0", "18.0", "3"]
-    assert [row[-1] for row in table.rows] == ["3", "", "", "7"]
-
-
-def test_ratios_are_those_of_rivals() -> None:
-    assert ratio_table(TIMES).rows == [
-        ["OIDN high", "14.00 (14.00-14.00)", "28.00 (28.00-28.00)"],
-        ["OIDN fast", "8.00 (8.00-8.00)", "16.00 (16.00-16.00)"],
-    ]
-
-
-def test_bars_are_judged_on_both_times() -> None:
-    assert bar_table(TIMES).rows == [
-        ["bar: OIDN high / 15", "14.00 missed", "28.00 holds"],
-        ["bar: OIDN fast / 8", "8.00 holds", "16.00 holds"],
-        ["aim: OIDN fast / 15", "8.00 missed", "16.00 holds"],
-    ]
-
-
-def test_markdown() -> None:
-    assert Table("T", ("a", "b"), [("1", "2")]).markdown() == "T:\n\n| a | b |\n| --- | --- |\n| 1 | 2 |\n"
-
-
 def test_wrong_input_ends_in_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(monkeypatch, "--set", "iterations=many") == 2
     said = capsys.readouterr().err
@@ -60,13 +35,49 @@ def test_wrong_input_ends_in_one_line(monkeypatch: pytest.MonkeyPatch, capsys: p
     assert said.count("\n") == 1
 
 
+@pytest.fixture
+def _cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(footage, "cache_folder", lambda: tmp_path)
+
+
+class Alone:
+    """Stands for a denoiser of single frames that returns its input; notes how many it saw."""
+
+    seen = 0
+
+    def denoise(self, frame: Frame) -> np.ndarray:
+        self.seen += 1
+        return frame.color
+
+
+@pytest.mark.usefixtures("_cache")
+def test_errors_are_of_the_judged_frames(queue: cl.CommandQueue) -> None:
+    pytest.importorskip("flip_evaluator")
+    film = replace(FOOTAGE, shape=(45, 80))
+    den, alone = Denoiser(film.shape, queue=queue), Alone()
+    used = next(room_frames(film.shape, 1))
+    den.denoise(used)  # other fields than the footage has, and a history that is not its own
+    ticks: list[None] = []
+    steps = film.parts_to_render + film.frames
+    found = versus_oidn.qualities(den, {"alone": alone}, film, lambda: ticks.append(None))
+    assert found["alone"] == found["noisy"]
+    assert found["svgf_cl"].psnr > found["noisy"].psnr
+    assert alone.seen == len(film.judged)
+    assert len(ticks) == steps
+
+
+@pytest.mark.usefixtures("_cache")
 def test_it_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
     target = tmp_path / "versus.json"
-    options = ("--size", "64x36", "--rounds", "2", "--set", "iterations=2", "--markdown", "--json", target)
+    pytest.importorskip("flip_evaluator")
+    monkeypatch.setattr(versus_oidn, "AREA", FOOTAGE)
+    options = ["--size", "80x45", "--rounds", "2", "--set", "iterations=2", "--markdown", "--json", target]
     assert run(monkeypatch, *options) == 0
-    assert "| bar: OIDN high / 15 | " in capsys.readouterr().out
+    assert "| bar: 15 x OIDN high | " in capsys.readouterr().out
     record = json.loads(target.read_text())
     assert record["settings"]["iterations"] == 2
     assert {len(samples) for samples in record["milliseconds"].values()} == {2}
-    assert all(size > 0 for size in record["bytes"].values())
+    assert record["bytes"].keys() == record["milliseconds"].keys() - {DEVICE}
+    assert list(record["error"]) == ["noisy", "svgf_cl", "OIDN high", "OIDN balanced", "OIDN fast"]
+    assert record["error"]["svgf_cl"]["psnr"] > record["error"]["noisy"]["psnr"]
