@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 HALO = 32  # pixels on every side: the reach of the widest a-trous level, 2 taps of step 16
-ROW_ALIGNMENT = 16  # pixels: the widest vector
+WIDEST_VECTOR = 16  # pixels: rows begin at a whole vector
+ROW_ALIGNMENT = 64  # pixels: the taps of the widest level, 16 rows apart, then lie at the same place of a page
+PAGE = 1024  # pixels of 4 KiB: were all rows that far apart, they would fight for the same few lines of a cache
 LARGEST_BUFFER = 8  # planes: colour and variance of two signals
 
 
@@ -18,15 +20,19 @@ class Layout:
     Parameters
     ----------
     height, width : int, pixels, >= 1
+    row_alignment : int, pixels
+        Rows are a multiple of it apart, but not of `PAGE`; a multiple of `WIDEST_VECTOR` itself, less than `PAGE`.
     """
 
     height: int
     width: int
+    row_alignment: int = ROW_ALIGNMENT
 
     @property
     def pitch(self) -> int:
         """Elements from one row to the next."""
-        return -(-self.width // ROW_ALIGNMENT) * ROW_ALIGNMENT + 2 * HALO
+        aligned = -(-(self.width + 2 * HALO) // self.row_alignment) * self.row_alignment
+        return aligned if aligned % PAGE else aligned + self.row_alignment
 
     @property
     def rows(self) -> int:

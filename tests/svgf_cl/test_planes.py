@@ -8,9 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
-from svgf_cl.planes import HALO, ROW_ALIGNMENT, Layout
+from svgf_cl.planes import HALO, PAGE, WIDEST_VECTOR, Layout
 
-layouts = st.builds(Layout, height=st.integers(1, 70), width=st.integers(1, 70))
+layouts = st.builds(
+    Layout, height=st.integers(1, 70), width=st.integers(1, 70), row_alignment=st.sampled_from((16, 64, 128, 256))
+)
 
 
 @given(layouts, st.integers(1, 3))
@@ -28,8 +30,14 @@ def test_indices_have_32_bits(side: int, indexable: bool) -> None:
 
 @given(layouts)
 def test_rows_hold_whole_vectors_and_a_halo_on_both_sides(layout: Layout) -> None:
-    assert layout.pitch % ROW_ALIGNMENT == 0
-    assert layout.width + 2 * HALO <= layout.pitch < layout.width + 2 * HALO + ROW_ALIGNMENT
+    assert layout.pitch % layout.row_alignment == layout.pitch % WIDEST_VECTOR == 0
+    assert layout.width + 2 * HALO <= layout.pitch < layout.width + 2 * HALO + layout.row_alignment
+
+
+@pytest.mark.parametrize("width", [PAGE - 2 * HALO, 2 * PAGE - 2 * HALO])
+@pytest.mark.parametrize("row_alignment", [16, 64, 256])
+def test_rows_are_no_whole_pages_apart(width: int, row_alignment: int) -> None:
+    assert Layout(1, width, row_alignment).pitch == width + 2 * HALO + row_alignment
 
 
 @given(layouts)
