@@ -4,6 +4,17 @@ from svgf_cl.denoiser import Denoiser
 from svgf_cl.errors import DeviceError, FrameError, SequenceError, SettingsError, SvgfError
 from svgf_cl.frame import Frame
 from svgf_cl.settings import Settings
+from svgf_cl.tuning import Tuning
 
-__all__ = ["Denoiser", "DeviceError", "Frame", "FrameError", "SequenceError", "Settings", "SettingsError", "SvgfError"]
+__all__ = [
+    "Denoiser",
+    "DeviceError",
+    "Frame",
+    "FrameError",
+    "SequenceError",
+    "Settings",
+    "SettingsError",
+    "SvgfError",
+    "Tuning",
+]
 __version__ = "0.1.0"

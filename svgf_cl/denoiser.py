@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -13,16 +14,13 @@ import pyopencl.array as cl_array
 
 from svgf_cl import devices, programs
 from svgf_cl.buffers import Buffers, Uploads, check_out
-from svgf_cl.errors import FrameError, SvgfError
+from svgf_cl.errors import DeviceError, FrameError, SvgfError
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.passes import OUT, Inputs, Pass, pipeline
 from svgf_cl.planes import Layout
 from svgf_cl.settings import Settings
 from svgf_cl.stages import StageView, stage_views
-
-# Vectors of a work-group, along a row and down. On a GPU, where a vector is one pixel, a tile of whole warps.
-WORK_GROUP = (16, 1)
-GPU_WORK_GROUP = (32, 4)
+from svgf_cl.tuning import Tuning, best_tuning
 
 
 @dataclass(frozen=True)
@@ -57,11 +55,19 @@ class Denoiser:
         In-order queue to work on; by default one on the fastest working device (`svgf_cl.devices.default_queue`).
     keep_stages : bool
         Give every stage memory of its own, so that `stage` can read all of them; by default they share it.
+    tuning : Tuning, optional
+        How to cut the work on this device; by default what ``svgf-cl tune`` found best, else what suits most.
+
+    Attributes
+    ----------
+    shape, settings, queue, tuning
+        What is in use.
 
     Raises
     ------
     SvgfError
-        If `shape` is no image, `queue` is not in order, or no OpenCL device works (`DeviceError`).
+        If `shape` is no image, `queue` is not in order, no OpenCL device works (`DeviceError`), or `tuning` is not for
+        the device.
 
     Examples
     --------
@@ -76,14 +82,14 @@ class Denoiser:
         settings: Settings | None = None,
         queue: cl.CommandQueue | None = None,
         keep_stages: bool = False,
+        tuning: Tuning | None = None,
     ) -> None:
         self.shape = check_shape(shape)
         self.settings = check_settings(settings)
         self.queue = check_queue(queue)
-        self._layout = layout_of(self.shape)
-        self._vector_width = devices.vector_width(self.queue.device)
-        self._work_group = GPU_WORK_GROUP if self._vector_width == 1 else WORK_GROUP
-        self._work_items = self._layout.work_items(self._vector_width, self._work_group)
+        self.tuning = check_tuning(tuning, self.queue.device)
+        self._layout = layout_of(self.shape, self.tuning.row_alignment)
+        self._work_items = self._layout.work_items(self.tuning.vector_width, self.tuning.work_group)
         self._keep_stages = keep_stages
         self._uploads = Uploads(self.queue)
         self._plan: Plan | None = None
@@ -194,16 +200,18 @@ class Denoiser:
         return self._plan
 
     def _launch(self, entry: Pass, inputs: Inputs) -> Launch:
-        defines = {"VW": self._vector_width, **inputs.defines, **self.settings.defines}
+        defines = {"VW": self.tuning.vector_width, **inputs.defines, **self.settings.defines}
         program = programs.build(self.queue.context, self.queue.device, entry.stage, defines)
         scalars = [] if entry.step is None else [np.int32(entry.step)]
         scalars += [np.float32(getattr(self.settings, name)) for name in entry.settings]
-        return Launch(entry, cl.Kernel(program, entry.kernel), (self._layout.size, *scalars))
+        kernel = cl.Kernel(program, entry.kernel)
+        check_work_group(kernel, self.queue.device, self.tuning)
+        return Launch(entry, kernel, (self._layout.size, *scalars))
 
     def _run(self, launch: Launch, planes: Buffers, user: dict[str, cl.Buffer]) -> cl.Event:
         names = (*launch.entry.reads, *launch.entry.writes)
         arguments = [user[name] if name in user else planes[name] for name in names]
-        return launch.kernel(self.queue, self._work_items, self._work_group, *launch.constants, *arguments)
+        return launch.kernel(self.queue, self._work_items, self.tuning.work_group, *launch.constants, *arguments)
 
     def _result(self, frame: Frame) -> Any:
         """A new array for the result, of the same kind as the frame's."""
@@ -245,9 +253,29 @@ def check_queue(queue: cl.CommandQueue | None) -> cl.CommandQueue:
     return queue
 
 
-def layout_of(shape: Shape) -> Layout:
+def check_tuning(tuning: Tuning | None, device: cl.Device) -> Tuning:
+    """The best known for None; `SvgfError` for one that is not for this device."""
+    if tuning is None:
+        return best_tuning(device)
+    if not isinstance(tuning, Tuning):
+        raise SvgfError(f"Denoiser: expected tuning=Tuning(...), got {tuning!r}")
+    tuning.check(device)
+    return tuning
+
+
+def check_work_group(kernel: cl.Kernel, device: cl.Device, tuning: Tuning) -> None:
+    """Raise `DeviceError` where a kernel takes so much of the device that fewer work-items fit a group."""
+    most = kernel.get_work_group_info(cl.kernel_work_group_info.WORK_GROUP_SIZE, device)
+    if math.prod(tuning.work_group) > most:
+        raise DeviceError(
+            f"Tuning.work_group: expected at most {most} work-items for {kernel.function_name} on {device.name}, got "
+            f"{tuning.work_group}; pass a Tuning with a smaller one, or if it was stored run 'svgf-cl tune --reset'"
+        )
+
+
+def layout_of(shape: Shape, row_alignment: int) -> Layout:
     """The layout of an image; `SvgfError` where it is too large for the kernels' indices."""
-    layout = Layout(*shape)
+    layout = Layout(*shape, row_alignment)
     if not layout.indexable:
         raise SvgfError(f"Denoiser: expected an image of at most about 16000 x 16000 pixels, got {shape!r}")
     return layout

@@ -176,24 +176,6 @@ def create_queue(device: cl.Device) -> cl.CommandQueue:
     return cl.CommandQueue(_context(device), device, properties=cl.command_queue_properties.PROFILING_ENABLE)
 
 
-def vector_width(device: cl.Device) -> int:
-    """Return how many pixels one work-item should process: 16, 8 or 4 on CPUs, 1 elsewhere.
-
-    Twice the CPU's native width hides the latency of its arithmetic; 16 is the widest type OpenCL has.
-
-    Parameters
-    ----------
-    device : pyopencl.Device
-
-    Returns
-    -------
-    int
-    """
-    if not device.type & cl.device_type.CPU:
-        return 1
-    return max(4, min(16, 2 * device.native_vector_width_float))
-
-
 @functools.cache
 def _context(device: cl.Device) -> cl.Context:
     return cl.Context([device])

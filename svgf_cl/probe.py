@@ -19,7 +19,7 @@ from collections.abc import Iterator
 import numpy as np
 import pyopencl as cl
 
-from svgf_cl.cache import cache_folder
+from svgf_cl.cache import cache_folder, device_key
 from svgf_cl.errors import SvgfError
 from svgf_cl.files import written_whole
 from svgf_cl.programs import OPTIONS
@@ -80,8 +80,7 @@ def key(device: cl.Device) -> str:
     -------
     str
     """
-    platform = device.platform
-    return " | ".join((platform.name, platform.version, device.name, device.driver_version, f"probe {VERSION}"))
+    return f"{device_key(device)} | probe {VERSION}"
 
 
 def run(device: cl.Device) -> str:

@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import pyopencl as cl
 import pytest
 
-from svgf_cl import devices
+from svgf_cl import devices, tuning
+
+
+@pytest.fixture(scope="session", autouse=True)
+def untuned(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Every device's default tuning, whatever is stored on this machine."""
+    folder = tmp_path_factory.mktemp("untuned")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(tuning, "cache_folder", lambda: folder)
+        yield
 
 
 @pytest.fixture(scope="session")

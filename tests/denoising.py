@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from svgf_cl import Denoiser, Frame, Settings, devices
+from svgf_cl import Denoiser, Frame, Settings, Tuning, tuning
 
 
 def feed(*frames: Frame, **chosen: Any) -> tuple[np.ndarray, Denoiser]:
@@ -23,5 +23,5 @@ def vector_width(width: int | None) -> Iterator[None]:
     """Denoisers made inside treat so many pixels as one vector; None leaves it to the device."""
     with pytest.MonkeyPatch.context() as patch:
         if width:
-            patch.setattr(devices, "vector_width", lambda device: width)
+            patch.setattr(tuning, "default_tuning", lambda device: Tuning(vector_width=width, work_group=(16, 1)))
         yield

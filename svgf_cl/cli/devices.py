@@ -9,13 +9,15 @@ from rich.table import Table
 from rich.text import Text
 
 from svgf_cl.devices import DeviceReport, choose, list_devices
+from svgf_cl.tuning import stored_tuning
 
 
 def devices() -> None:
     """List every OpenCL device and whether it really works.
 
     A device works if it builds and runs a small kernel; if not, the reason is shown. The default, marked *, is what
-    the other commands use; PYOPENCL_CTX picks another by its name in the first column.
+    the other commands use; PYOPENCL_CTX picks another by its name in the first column. A tuned device runs as
+    svgf-cl tune found best.
 
     \b
     Examples:
@@ -40,5 +42,12 @@ def _show(reports: Sequence[DeviceReport]) -> None:
 def _description(report: DeviceReport) -> str:
     # "OpenCL 3.0 <what the vendor likes to add>": the driver's version says the rest in fewer words.
     version = " ".join(report.version.split()[:2])
-    lines = (report.device, f"{report.platform}, {version}, driver {report.driver}", report.reason)
+    lines = (report.device, f"{report.platform}, {version}, driver {report.driver}", report.reason, _tuning(report))
     return "\n".join(line for line in lines if line)
+
+
+def _tuning(report: DeviceReport) -> str:
+    if not report.works or report.handle is None:
+        return ""
+    tuning = stored_tuning(report.handle)
+    return f"tuned: {tuning}" if tuning else "untuned; 'svgf-cl tune' looks for what is fastest"

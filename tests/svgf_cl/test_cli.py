@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl import Settings, SettingsError, __version__
+from svgf_cl import Settings, SettingsError, __version__, tuner, tuning
 from svgf_cl.cli import main
 from svgf_cl.cli.options import parse_settings, settings_help
 from svgf_cl.sequence import (
@@ -23,7 +23,7 @@ from svgf_cl.sequence import (
     write_picture,
 )
 
-COMMANDS = ("devices", "demo", "render", "denoise", "compare", "bench")
+COMMANDS = ("devices", "demo", "render", "denoise", "compare", "bench", "tune")
 NAMES = [f"frame.{number:04d}.exr" for number in range(3)]
 
 
@@ -119,6 +119,20 @@ def test_devices_marks_a_default_that_works(capsys: pytest.CaptureFixture[str]) 
 
 
 # render, denoise, compare
+
+
+def test_tune_stores_what_it_found(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tuning, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(tuner, "CHOICES", {"vector_width": (4, 8, 16), "row_alignment": (16, 256)})
+    assert run("tune", "--size", "32x18") == 0
+    assert f"stored in {tmp_path / tuning.MEMORY}" in capsys.readouterr().out
+    assert run("devices") == 0
+    assert "tuned: vectors of" in capsys.readouterr().out
+    assert run("tune", "--reset") == 0
+    assert run("devices") == 0
+    assert "tuned: vectors of" not in capsys.readouterr().out
 
 
 def test_render_writes_every_field_of_every_frame(rendered: Path) -> None:

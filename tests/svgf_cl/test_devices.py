@@ -211,15 +211,6 @@ def test_an_installed_but_unlisted_intel_runtime_is_reported(machine, monkeypatc
     assert devices.list_devices()[-1].reason == f"unlike {[POCL]}"
 
 
-@pytest.mark.parametrize(("native", "width"), [(0, 4), (1, 4), (4, 8), (8, 16), (16, 16)])
-def test_vector_width_of_a_cpu(native, width):
-    assert devices.vector_width(FakeDevice("cpu", native_vector_width_float=native)) == width
-
-
-def test_vector_width_of_a_gpu():
-    assert devices.vector_width(gpu("gpu", native_vector_width_float=4)) == 1
-
-
 def test_this_machine_has_a_working_device(queue):
     works = [report.handle for report in devices.list_devices() if report.works]
     assert queue.device in works

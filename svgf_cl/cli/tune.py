@@ -1,0 +1,70 @@
+"""``svgf-cl tune``: the fastest vector width, work-group and layout of rows for this device."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from svgf_cl.cli.console import progress_bar, show
+from svgf_cl.cli.options import Size, parse_size
+from svgf_cl.devices import default_queue
+from svgf_cl.frame import Shape
+from svgf_cl.tuner import STEPS, Trial, Tuner
+from svgf_cl.tuning import default_tuning, forget_tuning, store_tuning
+
+
+def tune(
+    size: Size = "1280x720",
+    reset: Annotated[bool, typer.Option("--reset", help="Forget what was found for this device, and leave.")] = False,
+) -> None:
+    """Find how this device denoises fastest, and remember it for its driver.
+
+    Times vector widths, work-groups and alignments of rows against the default on a built-in room, in less than a
+    minute, and stores the fastest where every later run finds it; the default, unless something is faster beyond noise.
+    Pictures stay the same to within rounding. Best on an otherwise idle machine. PYOPENCL_CTX picks another device.
+
+    \b
+    Examples:
+      svgf-cl tune
+      PYOPENCL_CTX=1:0 svgf-cl tune --size 1920x1080
+      svgf-cl tune --reset
+    """
+    shape = parse_size(size)
+    queue = default_queue()
+    device = queue.device
+    print(f"device: {device.name} ({device.platform.version})")
+    if reset:
+        print(f"untuned again in {forget_tuning(device)}")
+        return
+    tuner = Tuner(shape, queue)
+    with progress_bar("tuning", STEPS) as advance:
+        final = tuner.search(advance)
+    columns = ("vector", "rows", "group", "ms", "Mpixel/s", "time/default")
+    show(f"{size}, in the order tried", columns, [trial_row(trial, shape) for trial in tuner.trials])
+    for trial in tuner.trials:
+        if trial.fault:
+            print(f"rejected {trial.tuning}: {trial.fault}")
+    if tuner.untried:
+        print(f"no time was left for {tuner.untried} candidates; a smaller --size takes less")
+    chosen = final.tuning if final.is_faster else default_tuning(device)
+    print(verdict(final))
+    print(f"{chosen}: stored in {store_tuning(device, chosen)}")
+
+
+def trial_row(trial: Trial, shape: Shape) -> tuple[str, ...]:
+    """Spell one row of the table; a dash for what was not timed."""
+    tuning = trial.tuning
+    cells = str(tuning.vector_width), str(tuning.row_alignment), "{}x{}".format(*tuning.work_group)
+    if not trial.times:
+        return (*cells, "-", "-", "-")
+    return (*cells, f"{trial.time:.2f}", f"{1e-3 * shape[0] * shape[1] / trial.time:.0f}", f"{trial.ratio:.3f}")
+
+
+def verdict(final: Trial) -> str:
+    """Say what came of the final between the fastest candidate and the default."""
+    if not final.ratios:
+        return "nothing is faster than the default"
+    wins = sum(ratio < 1 for ratio in final.ratios)
+    found = f"{final.tuning}: {final.ratio:.3f} of the default's time, faster in {wins} of {len(final.ratios)} rounds"
+    return found if final.is_faster else f"{found}: within noise, so the default stays"
