@@ -35,7 +35,7 @@ CHOICES: dict[str, tuple[Any, ...]] = {
 }
 STEPS = sum(map(len, CHOICES.values())) + 1  # of a search, as its progress is counted
 
-SECONDS = 50.0  # then no candidate is built any more and no round begun, but for the least that a verdict takes
+SECONDS = 45.0  # then no candidate is built any more and no round begun, but for the least that a verdict takes
 FINAL_SHARE = 0.15  # of these
 
 WARM_UP = 3  # frames: kernels are built, memory is touched
