@@ -158,18 +158,18 @@ class Tuner:
     def _race(self, best: Trial, knob: str, deadline: float, advance: Callable[[], None]) -> Trial:
         """The fastest of `best`, the default, and what comes of giving `best` other values of one knob."""
         default = self._enter(self._default)
-        field = [] if best is self._default else [self._enter(best)]
+        rivals = [] if best is self._default else [self._enter(best)]
         for value in CHOICES[knob]:
-            field += self._candidate(replace(best.tuning, **{knob: value}), deadline)
+            rivals += self._candidate(replace(best.tuning, **{knob: value}), deadline)
             advance()
-        field = [runner for runner in field if runner.warm_up <= HOPELESS * default.warm_up]
-        while field:
-            self._run([default, *field], (1, ROUNDS), deadline)
-            field.sort(key=lambda runner: runner.trial.ratio)
-            if len(field) == 1:
+        rivals = [runner for runner in rivals if runner.warm_up <= HOPELESS * default.warm_up]
+        while rivals:
+            self._run([default, *rivals], (1, ROUNDS), deadline)
+            rivals.sort(key=lambda runner: runner.trial.ratio)
+            if len(rivals) == 1:
                 break
-            del field[(len(field) + 1) // 2 :]
-        return min([self._default, *(runner.trial for runner in field)], key=lambda trial: trial.ratio)
+            del rivals[(len(rivals) + 1) // 2 :]
+        return min([self._default, *(runner.trial for runner in rivals)], key=lambda trial: trial.ratio)
 
     def _candidate(self, tuning: Tuning, deadline: float) -> list[Runner]:
         """A runner for a tuning, or none if it was tried, is at fault, or comes too late."""
