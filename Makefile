@@ -22,8 +22,8 @@ lint: $(READY)  ## check style, types and kernels (needs clang)
 	$(BIN)/mypy
 	$(BIN)/python scripts/lint_kernels.py
 
-bench: device  ## time every pass at 1280x720, and weigh speed against error
-	$(BIN)/svgf-cl bench
+bench: device  ## time every kernel on every device, beside the error; report in out/bench (five minutes)
+	$(BIN)/svgf-cl bench --output out/bench
 	$(BIN)/python -m benchmarks.speed_against_error
 
 docs: demo  ## make docs/accuracy.md and the picture of README again

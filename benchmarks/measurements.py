@@ -12,7 +12,8 @@ import numpy as np
 from benchmarks.footage import Footage
 from benchmarks.variants import Variant
 from svgf_cl import Denoiser, Frame
-from svgf_cl.bench import WARM_UP, error_to_oracle
+from svgf_cl.bench import error_to_oracle
+from svgf_cl.bench.rig import WARM_UP
 from svgf_cl.display import Linear, display
 from svgf_cl.frame import Shape
 from svgf_cl.metrics import flip, psnr, relmse, temporal_error

@@ -38,17 +38,22 @@ def room_frames(shape: Shape, count: int, *, signals: int = 1, seed: int = 0) ->
         With albedo and id; motion has three components and is exact.
     """
     for index in range(count):
-        view = View.of(shape, eye(index))
-        past = view.points - eye(index - 1)
-        deeper = -past[..., 2:] - view.depth[..., None]
-        motion = np.concatenate([project(past, shape) - pixels(shape), deeper], axis=-1)
-        rng = np.random.default_rng((seed, index))
-        lights = [0.5 * view.albedo * rng.exponential(1.0, (*shape, 1)) for _ in range(signals)]
-        split = {} if signals == 1 else {"direct": lights[0], "indirect": lights[1]}
-        surface = {"albedo": view.albedo, "normal": view.normal, "depth": view.depth, "motion": motion}
-        fields = {"color": sum(lights), **split, **surface}
-        single = {name: np.ascontiguousarray(value, np.float32) for name, value in fields.items()}
-        yield Frame(**single, id=view.wall.astype(np.uint32))
+        yield room_frame(shape, index, index - 1, signals=signals, seed=seed)
+
+
+def room_frame(shape: Shape, index: int, previous: int, *, signals: int = 1, seed: int = 0) -> Frame:
+    """The frame at place `index` of the camera's loop, as it comes after the one at place `previous`."""
+    view = View.of(shape, eye(index))
+    past = view.points - eye(previous)
+    deeper = -past[..., 2:] - view.depth[..., None]
+    motion = np.concatenate([project(past, shape) - pixels(shape), deeper], axis=-1)
+    rng = np.random.default_rng((seed, index))
+    lights = [0.5 * view.albedo * rng.exponential(1.0, (*shape, 1)) for _ in range(signals)]
+    split = {} if signals == 1 else {"direct": lights[0], "indirect": lights[1]}
+    surface = {"albedo": view.albedo, "normal": view.normal, "depth": view.depth, "motion": motion}
+    fields = {"color": sum(lights), **split, **surface}
+    single = {name: np.ascontiguousarray(value, np.float32) for name, value in fields.items()}
+    return Frame(**single, id=view.wall.astype(np.uint32))
 
 
 @dataclass(frozen=True, eq=False)

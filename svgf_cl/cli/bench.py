@@ -1,53 +1,81 @@
-"""``svgf-cl bench``: how fast the filter is here, and how far from the oracle."""
+"""``svgf-cl bench``: how fast the filter is here, how near the device's limits, and how far from the oracle."""
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from svgf_cl.bench import Timing, error_to_oracle, measure
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import SettingTexts, parse_settings, parse_size
-from svgf_cl.denoiser import Denoiser
+from svgf_cl.errors import SvgfError
+from svgf_cl.files import make_folder
 
 
 def bench(
-    size: Annotated[list[str], typer.Option(metavar="WxH", help="Size to time; may be repeated.")] = ["1280x720"],  # noqa: B006  # never changed; typer wants the default spelled here
-    frames: Annotated[int, typer.Option(metavar="N", min=1, help="Timed frames per size, after warm-up.")] = 40,
-    signals: Annotated[
-        int, typer.Option(metavar="N", min=1, max=2, help="2: direct and indirect light filtered apart.")
-    ] = 1,
+    filter_: Annotated[
+        str, typer.Option("--filter", metavar="REGEX", help="Only benchmarks whose name it is found in.")
+    ] = "",
+    size: Annotated[
+        list[str], typer.Option(metavar="WxH", help="Size to time; may be repeated. By default 320x180 to 3840x2160.")
+    ] = [],  # noqa: B006  # never changed; typer wants the default spelled here
+    seconds: Annotated[float, typer.Option(metavar="S", min=0.0, help="Time for each denoiser, about.")] = 1.0,
+    old: Annotated[
+        Path | None,
+        typer.Option("--compare", metavar="OLD.json", help="Show how times differ from those of an earlier run."),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="Also write results.json, report.html and summary.png there."
+        ),
+    ] = None,
     set_: SettingTexts = [],  # noqa: B006
 ) -> None:
-    """Time every pass, and show the error.
+    """Time every kernel and the whole frame, against the device's own ceilings, beside the error.
 
-    The error is that against the float64 oracle. Input is the camera moving in a built-in room, with albedo and ids.
-    Pass times come from OpenCL events; "device" is their sum, "frame" is the whole call with numpy arrays in and out,
-    copies included.
+    Runs on every device that works, or on the one that PYOPENCL_CTX names. Input is the camera moving in a built-in
+    room, with albedo and ids. Event time is the device's clock, host time the caller's. Names are such as
+    svgf.atrous.3.1280x720 and svgf.frame.1280x720. How to read it all: docs/benchmarks.md.
 
     \b
     Examples:
-      svgf-cl bench
-      svgf-cl bench --size 1280x720 --size 1920x1080 --signals 2 --set taa=on
+      svgf-cl bench --filter 'frame|enqueue' --size 1280x720
+      svgf-cl bench --output out/bench
+      svgf-cl bench --filter atrous --compare out/bench/results.json
     """
-    settings = parse_settings(set_)
-    shapes = [parse_size(text) for text in size]
-    for shape in shapes:
-        den = Denoiser(shape, settings=settings)
-        with progress_bar(f"{shape[1]}x{shape[0]}", frames) as advance:
-            timings = measure(den, frames, signals=signals, advance=advance)
-        megapixels = shape[0] * shape[1] / 1e6
-        columns = ("pass", "median ms", "10 %", "90 %", "Mpixel/s")
-        rows = [timing_row(timing, megapixels) for timing in timings]
-        show(f"{shape[1]}x{shape[0]}, {frames} frames, {den.nbytes / 2**20:.0f} MiB of planes", columns, rows)
-    device = den.queue.device
-    worst, rms = error_to_oracle(settings, signals=signals)
-    print(f"device: {device.name} ({device.platform.version})")
-    print(f"error against the float64 oracle, relative to the picture's mean: rms {rms:.1e}, largest {worst:.1e}")
+    try:
+        from svgf_cl.bench import compare, report, tables
+        from svgf_cl.bench.cases import SHAPES
+        from svgf_cl.bench.results import Run
+        from svgf_cl.bench.suite import Suite
+    except ModuleNotFoundError as error:
+        raise SvgfError(f"bench needs more ({error}): pip install '.[bench]' in a clone of svgf_cl") from error
+    shapes = [parse_size(text) for text in size] or SHAPES
+    suite = Suite(parse_filter(filter_), shapes, parse_settings(set_), seconds)
+    earlier = Run.read(old) if old else None
+    folder = make_folder(output) if output else None
+    run = suite.run(progress_bar)
+    shown = [tables.device_table(run), *(tables.stage_table(run, device) for device in run.devices)]
+    if earlier:
+        shown.append(compare.comparison(earlier, run))
+    for table in shown:
+        show(table.title, table.columns, table.rows)
+    for line in run.left_out:
+        print(f"left out: {line}")
+    for line in compare.differences(earlier, run) if earlier else ():
+        print(line)
+    if folder:
+        run.write(folder / "results.json")
+        report.write(run, folder, old=earlier)
+        print(f"{folder}: results.json, report.html, summary.png")
 
 
-def timing_row(timing: Timing, megapixels: float) -> tuple[str, ...]:
-    """Spell one row of the table."""
-    times = (f"{value:.2f}" for value in (timing.median, timing.low, timing.high))
-    return (timing.name, *times, f"{1e3 * megapixels / timing.median:.0f}")
+def parse_filter(text: str) -> re.Pattern[str]:
+    """Read a regular expression; `SvgfError` where it is none."""
+    try:
+        return re.compile(text)
+    except re.error as error:
+        raise SvgfError(f"--filter: expected a regular expression, got {text!r} ({error})") from error

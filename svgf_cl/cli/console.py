@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from statistics import median
@@ -12,6 +13,8 @@ from rich.progress import Progress
 from rich.table import Table
 
 Item = TypeVar("Item")
+
+WIDE = 160  # columns where the output is no terminal: nothing is gained by breaking words in a file
 
 
 @contextmanager
@@ -39,7 +42,7 @@ def show(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> N
         table.add_column(column, justify="right" if index else "left")
     for row in rows:
         table.add_row(*row)
-    Console().print(table)
+    Console(width=None if sys.stdout.isatty() else WIDE).print(table)
 
 
 def show_times(profiles: Sequence[Mapping[str, float]]) -> None:

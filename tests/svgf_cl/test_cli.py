@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl import Settings, SettingsError, __version__, tuner, tuning
+from svgf_cl import Settings, SettingsError, __version__, devices, tuner, tuning
 from svgf_cl.cli import main
 from svgf_cl.cli.options import parse_settings, settings_help
 from svgf_cl.sequence import (
@@ -105,7 +105,7 @@ def test_what_comes_from_outside_leaves_no_traceback(
     def broken(*_: object, **__: object) -> None:
         raise error
 
-    monkeypatch.setattr(sys.modules["svgf_cl.cli.bench"], "Denoiser", broken)
+    monkeypatch.setattr("svgf_cl.bench.suite.Suite.run", broken)
     assert run("bench") == code
     said = capsys.readouterr().err
     assert said.strip() == ("svgf-cl: not enough memory: 8 EiB" if code == 2 else "")
@@ -368,3 +368,41 @@ def test_settings_are_read_by_their_own_type() -> None:
 
 def test_help_lists_every_setting() -> None:
     assert all(f"{name}: " in settings_help() for name in vars(Settings()))
+
+
+# bench
+
+
+@pytest.fixture
+def quick_ceilings(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ceilings of no worth, measured at once, and an error that was not measured."""
+    monkeypatch.setattr("svgf_cl.bench.ceilings.WORKING_SETS", (2**22,))
+    monkeypatch.setattr("svgf_cl.bench.ceilings.COPIED", 1)
+    monkeypatch.setattr("svgf_cl.bench.station.error_to_oracle", lambda *_, **__: (2e-7, 1e-7))
+    monkeypatch.setattr("svgf_cl.bench.suite.timed_devices", lambda: [devices.choose(devices.list_devices())])
+
+
+@pytest.mark.usefixtures("quick_ceilings")
+def test_bench_writes_a_report_and_compares(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    argv = ("bench", "--filter", "frame.16x9", "--size", "16x9", "--seconds", "0", "-o", tmp_path)
+    assert run(*argv) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["report.html", "results.json", "summary.png"]
+    shown = capsys.readouterr().out
+    assert "svgf.frame.16x9" in shown
+    assert "2.0e-07" in shown, "speed stands beside error"
+    assert run(*argv, "--compare", tmp_path / "results.json") == 0
+    assert "times faster" in capsys.readouterr().out
+    assert "times faster" in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+def test_what_bench_cannot_make_sense_of(tmp_path: Path, refused) -> None:
+    refused("--filter: expected a regular expression, got '('", "bench", "--filter", "(")
+    refused("cannot be read", "bench", "--compare", tmp_path / "none.json")
+    refused("--filter: expected part of a name", "bench", "--filter", "nothing.of.the.kind")
+
+
+def test_bench_without_its_extra_says_what_to_install(monkeypatch: pytest.MonkeyPatch, refused) -> None:
+    monkeypatch.setitem(sys.modules, "jinja2", None)
+    monkeypatch.delitem(sys.modules, "svgf_cl.bench.report", raising=False)
+    monkeypatch.delattr("svgf_cl.bench.report", raising=False)
+    refused("pip install '.[bench]'", "bench")

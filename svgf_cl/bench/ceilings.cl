@@ -1,0 +1,42 @@
+// What a device can do at best, for the roofline: copy memory, and multiply and add.
+//
+//   copy       target[i] = source[i], all of it `repeats` times;  item g takes the vectors g * first + k * step, k < count
+//   multiply   CHAINS independent sums a := a * b + c per lane, `count` times
+//
+// in   source;  out  target
+// A CPU's item takes neighbouring vectors (step 1), a GPU's takes every so-manieth: what each of them fetches best.
+// No `restrict`: a compiler that knew source and target apart might do the repeats but once.
+//
+// Macros set by the host: VW 1 | 4 | 8 | 16 (floats of a vector), CHAINS.
+
+#define CAT_(a, b) a##b
+#define CAT(a, b) CAT_(a, b)
+#if VW == 1
+typedef float floatv;
+#define SUM(v) (v)
+#else
+typedef CAT(float, VW) floatv;
+#define SUM(v) (v).s0
+#endif
+
+__kernel void copy(const int first, const int step, const int count, const int repeats, __global const floatv *source,
+                   __global floatv *target) {
+    const int begin = (int)get_global_id(0) * first;
+    for (int r = 0; r < repeats; ++r) {
+        for (int k = 0; k < count; ++k) target[begin + k * step] = source[begin + k * step];
+    }
+}
+
+__kernel void multiply(const int count, const float b, const float c, __global float *target) {
+    floatv a[CHAINS];
+#pragma unroll
+    for (int i = 0; i < CHAINS; ++i) a[i] = (floatv)((float)i);
+    for (int k = 0; k < count; ++k) {
+#pragma unroll
+        for (int i = 0; i < CHAINS; ++i) a[i] = mad(a[i], (floatv)(b), (floatv)(c));
+    }
+    floatv sum = (floatv)(0.0f);
+#pragma unroll
+    for (int i = 0; i < CHAINS; ++i) sum += a[i];
+    target[get_global_id(0)] = SUM(sum);
+}

@@ -1,0 +1,139 @@
+"""What a pass must at least move and compute per pixel, counted from its equation and not from its kernel.
+
+Bytes: every plane a pass needs is read once and every plane it makes is written once; neighbours come from a cache.
+Operations: the equations of docs/algorithm.md in single precision. An addition, multiplication, comparison with its
+choice, absolute value, rounding, division and root count as one each, so a multiply-add counts as two. What is common
+to several taps counts once. In a steady state: what a pass does only where history is short or lost is left out.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from svgf_cl.passes import Inputs, Pass
+from svgf_cl.settings import Settings
+
+FLOAT = 4  # bytes
+
+# Channels of the user's interleaved arrays.
+CHANNELS = {
+    "color": 3,
+    "direct": 3,
+    "indirect": 3,
+    "albedo": 3,
+    "emission": 3,
+    "normal": 3,
+    "depth": 1,
+    "id": 1,
+    "out": 3,
+}
+
+DOT = 5  # x x' + y y' + z z'; luminance too
+EXP = 15  # exp(-x) to float32's precision: range reduction 5, polynomial of degree 5 with 2 a degree
+BLEND = 3  # a + t (b - a)
+DISTANCE = 3  # |a - b| scale
+GRADIENT = 10  # per axis two differences, two magnitudes, a choice
+SAFE = 2  # finite? else another value
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Bytes and floating-point operations; of a pixel, or of an image."""
+
+    bytes: float
+    flops: float
+
+    def __add__(self, other: Cost) -> Cost:
+        return Cost(self.bytes + other.bytes, self.flops + other.flops)
+
+    def __mul__(self, pixels: int) -> Cost:
+        return Cost(self.bytes * pixels, self.flops * pixels)
+
+
+def cost(entry: Pass, inputs: Inputs, settings: Settings) -> Cost:
+    """What a pass costs per pixel."""
+    planes = sum(planes_used(entry, name, inputs) for name in (*entry.reads, *entry.writes))
+    return Cost(FLOAT * planes, OPERATIONS[entry.kernel](inputs, settings))
+
+
+def planes_used(entry: Pass, buffer: str, inputs: Inputs) -> int:
+    """How many of a buffer's planes, or of a user's array's channels, a pass needs."""
+    light = 3 * inputs.signals
+    if buffer == "motion":
+        return 2 if entry.kernel == "taa" else inputs.motion
+    parts = {
+        ("temporal", "history"): light,  # without the variance
+        ("temporal", "accumulated"): light,
+        ("atrous", "guide"): 4,  # normal and depth
+        ("variance", "guide"): 0,  # only where history is short
+        ("variance", "moments"): 1 + inputs.signals,  # length and variance
+        ("variance", "accumulated"): inputs.signals,
+        ("modulate", entry.reads[-1]): light,
+        ("taa", "guide"): 1,  # depth
+        ("taa", "moments"): 1,  # length
+    }
+    if (entry.kernel, buffer) in parts:
+        return parts[entry.kernel, buffer]
+    return CHANNELS.get(buffer) or inputs.planes(buffer)
+
+
+def demodulate(inputs: Inputs, settings: Settings) -> float:
+    """Section 1: a unit normal, then radiance made safe, divided by albedo and clamped."""
+    normal = DOT + 2 + 3 + SAFE
+    albedo = 3 * (SAFE + 1) if inputs.albedo else 0
+    emission = 3 * (SAFE + 2) if inputs.emission and inputs.signals == 1 else 0
+    return normal + albedo + emission + inputs.signals * 3 * (SAFE + 1 + 2)
+
+
+def temporal(inputs: Inputs, settings: Settings) -> float:
+    """Section 2: four taps of the footprint, each held against the surface, then the blend of colour and moments."""
+    footprint = 2 * (1 + 2 + 2) + GRADIENT + 4  # clamp, floor and fraction per axis; tolerance of depth
+    consistent = DOT + 1 + (4 + 2 + 1) + 1 + (1 if inputs.id else 0)  # normal; depth along the surface; hit; id
+    weight = 3 + 1
+    tap = consistent + weight + 2 * (1 + 3 * inputs.signals) + inputs.signals * (2 + 3 + 2)  # N, c; M; V + (M - M_h)^2
+    blend = inputs.signals * (3 * BLEND + DOT + BLEND + 1 + 4)  # c; l(c); M; 1 - a; V
+    return footprint + 4 * tap + 4 + blend  # N, 1 / N, the two shares
+
+
+def variance(inputs: Inputs, settings: Settings) -> float:
+    """Section 3 where history is long: a choice by it, and by whether anything was hit."""
+    return 2 + inputs.signals
+
+
+def atrous(inputs: Inputs, settings: Settings) -> float:
+    """Section 4: one level of 5x5 taps; those at +d and -d have the tolerance of depth in common."""
+    tolerance = 3 + 1 + 2 + 1 + 1  # |g . d|; times sigma; plus the floor times z; not 0; reciprocal
+    surface = DOT + 1 + math.log2(settings.sigma_normal) + DISTANCE + 1  # w_n; exponent of w_z; h
+    light = DOT + DISTANCE + 1 + EXP + 1  # exponent of w_l; both exponents; w
+    sums = 2 * 3 + 1 + 2 + 1  # w c; w^2 Var; w
+    smooth = 9 * (2 + 1 + 1) + 1 + 1 + DOT + 4  # 3x3 Gaussian over hits; root; the scale of w_l
+    normalise = 1 + 3 + 2
+    return GRADIENT + 12 * tolerance + 24 * surface + inputs.signals * (24 * (light + sums) + smooth + normalise)
+
+
+def modulate(inputs: Inputs, settings: Settings) -> float:
+    """Section 5: times albedo, plus emission."""
+    albedo = SAFE + 2 if inputs.albedo else 0
+    emission = SAFE + 2 if inputs.emission else 0
+    return 3 * (inputs.signals - 1 + albedo + emission + 1)
+
+
+def taa(inputs: Inputs, settings: Settings) -> float:
+    """Section 6: nearest neighbour, tone map, 4x4 taps of history, clamp, blend and back."""
+    tone = 8 + 2 + 3
+    foremost = 9 * 2
+    history = 2 * 16 + 16 * (1 + 2 * 3)
+    extent = 8 * 2 * 3
+    return foremost + tone + history + extent + 3 * (2 + BLEND) + 4 + 3 + 5
+
+
+OPERATIONS: dict[str, Callable[[Inputs, Settings], float]] = {
+    "demodulate": demodulate,
+    "temporal": temporal,
+    "variance": variance,
+    "atrous": atrous,
+    "modulate": modulate,
+    "taa": taa,
+}

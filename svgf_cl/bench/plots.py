@@ -1,0 +1,149 @@
+"""The plots of a run; each draws on axes that it is given, so that report and summary show the same."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from svgf_cl.bench.results import DeviceRecord, Result, Run
+from svgf_cl.bench.rig import EVENT
+from svgf_cl.bench.scaling import Series, series
+
+Draw = Callable[[Axes], None]
+
+# Okabe and Ito's colours, told apart by all eyes and on dark and light ground.
+COLORS = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#56B4E9", "#CC79A7", "#F0E442", "#999999")
+
+
+def plots(run: Run) -> dict[str, Draw]:
+    """What can be drawn of a run, by title."""
+    found: dict[str, Draw] = {}
+    if bars := frame_parts(run):
+        found["A frame, stage by stage"] = lambda axes: draw_frames(axes, bars)
+    for device in run.devices:
+        if stages := roofline_stages(run, device):
+            found[f"Roofline: {device.platform}"] = bind(draw_roofline, device, stages)
+    for over, draw in (("pixels", draw_pixels), ("iterations", draw_iterations), ("cores", draw_cores)):
+        if lines := series(run, over):
+            found[f"Scaling over {over}"] = bind(draw, lines)
+    return found
+
+
+def bind(draw: Callable[..., None], *arguments: object) -> Draw:
+    """The drawing function of these arguments, for axes to come."""
+    return lambda axes: draw(axes, *arguments)
+
+
+def frame_parts(run: Run) -> dict[str, dict[str, float]]:
+    """Milliseconds per megapixel of every pass, by size and implementation."""
+    found: dict[str, dict[str, float]] = {}
+    for device in run.devices:
+        for result in run.of(device, clock=EVENT, variant=""):
+            facts = result.facts
+            if facts["stage"] in ("frame", "atrous"):
+                continue
+            bar = found.setdefault(f"{device.platform}\n{facts['width']}x{facts['height']}", {})
+            bar[facts["stage"]] = 1e9 * result.median / (facts["width"] * facts["height"])
+    return found
+
+
+def draw_frames(axes: Axes, bars: dict[str, dict[str, float]]) -> None:
+    """A stacked bar for each size: equally long bars mean that time is linear in pixels."""
+    stages = list(dict.fromkeys(stage for bar in bars.values() for stage in bar))
+    kernels = list(dict.fromkeys(stage.split()[0] for stage in stages))  # all levels in one colour
+    left = np.zeros(len(bars))
+    for stage in stages:
+        width = np.array([bar.get(stage, 0.0) for bar in bars.values()])
+        color = COLORS[kernels.index(stage.split()[0])]
+        axes.barh(list(bars), width, left=left, color=color, edgecolor="white", linewidth=0.5, label=stage)
+        left += width
+    axes.invert_yaxis()
+    axes.tick_params(axis="y", labelsize="small")
+    axes.set_xlabel("ms per megapixel, event time")
+    axes.legend(fontsize="small", ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.18), frameon=False)
+
+
+def roofline_stages(run: Run, device: DeviceRecord) -> list[Result]:
+    """Stages with a bound at the largest size timed, levels together."""
+    found = [r for r in run.of(device, clock=EVENT, variant="") if r.roofline and not r.facts["stage"][-1].isdigit()]
+    largest = max((r.facts["width"] * r.facts["height"] for r in found), default=0)
+    return [r for r in found if r.facts["width"] * r.facts["height"] == largest]
+
+
+def draw_roofline(axes: Axes, device: DeviceRecord, stages: Sequence[Result]) -> None:
+    """Operations per second over operations per byte, below the roof of bandwidth and peak."""
+    intensity = np.logspace(-1.5, 2.5, 100)
+    peak = device.flops
+    working_set = stages[0].facts["bytes"]
+    roofs = {
+        "copy, in cache": max(speed for _, speed in device.bandwidth),
+        "copy, out of cache": device.ceilings.bandwidth_at(working_set),
+    }
+    for (label, speed), style in zip(roofs.items(), ("--", "-"), strict=True):
+        roof = np.minimum(intensity * speed, peak)
+        axes.loglog(intensity, 1e-9 * roof, style, color=COLORS[-1], label=f"{label}: {1e-9 * speed:.0f} GB/s")
+    for index, stage in enumerate(stages):
+        facts, best = stage.facts, min(stage.seconds)
+        label = f"{facts['stage']}: {100 * (stage.roofline or 0):.0f} %, {facts['binds']} binds"
+        axes.plot(
+            facts["flops"] / facts["bytes"], 1e-9 * facts["flops"] / best, "o", color=COLORS[index % 7], label=label
+        )
+    axes.set_xlabel("operations per byte")
+    axes.set_ylabel("GFLOP/s")
+    width, height = stages[0].facts["width"], stages[0].facts["height"]
+    title = f"{width}x{height}, peak {1e-9 * peak:.0f} GFLOP/s"
+    axes.legend(fontsize="small", frameon=False, title=title, title_fontsize="small", alignment="left")
+
+
+def draw_pixels(axes: Axes, lines: Sequence[Series]) -> None:
+    """Time per pixel: a flat line means that time is linear."""
+    axes.set_prop_cycle(color=COLORS)
+    for line in lines:
+        per = 1e9 * np.array(line.seconds) / np.array(line.over)
+        axes.semilogx(1e-6 * np.array(line.over), per, "o-", label=line.device.platform)
+    axes.set_ylim(bottom=0)
+    axes.set_xlabel("megapixels")
+    axes.set_ylabel("ms per megapixel")
+    axes.legend(fontsize="small", frameon=False)
+
+
+def draw_iterations(axes: Axes, lines: Sequence[Series]) -> None:
+    """Time over a-trous levels."""
+    axes.set_prop_cycle(color=COLORS)
+    for line in lines:
+        axes.plot(line.over, 1e3 * np.array(line.seconds), "o-", label=line.device.platform)
+    axes.set_ylim(bottom=0)
+    axes.set_xticks(lines[0].over)
+    axes.set_xlabel("a-trous levels")
+    axes.set_ylabel("ms a frame")
+    axes.legend(fontsize="small", frameon=False)
+
+
+def draw_cores(axes: Axes, lines: Sequence[Series]) -> None:
+    """Speed over compute units, against the ideal."""
+    axes.set_prop_cycle(color=COLORS)
+    most = max(line.over[-1] for line in lines)
+    axes.plot([1, most], [1, most], ":", color=COLORS[-1], label="ideal")
+    for line in lines:
+        axes.plot(line.over, line.seconds[0] / np.array(line.seconds), "o-", label=line.device.platform)
+    axes.set_xticks(sorted({count for line in lines for count in line.over}))
+    axes.set_xlabel("compute units")
+    axes.set_ylabel("times faster than one")
+    axes.legend(fontsize="small", frameon=False)
+
+
+def summary(run: Run) -> Figure:
+    """All plots on one page."""
+    drawings = plots(run)
+    columns = 2
+    rows = max(1, -(-len(drawings) // columns))
+    figure = Figure(figsize=(7 * columns, 4.5 * rows), layout="constrained")
+    for index, (title, draw) in enumerate(drawings.items()):
+        axes = figure.add_subplot(rows, columns, index + 1)
+        draw(axes)
+        axes.set_title(title)
+        axes.grid(alpha=0.2)
+    return figure

@@ -1,0 +1,207 @@
+"""What a run of the benchmark found, as JSON in pytest-benchmark's schema, so that its tools can read it too."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, field
+from datetime import datetime, timezone
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import pytest_benchmark
+from pytest_benchmark.plugin import pytest_benchmark_generate_machine_info
+from pytest_benchmark.stats import Stats
+
+from svgf_cl import __version__
+from svgf_cl.bench.ceilings import Ceilings
+from svgf_cl.errors import SvgfError
+from svgf_cl.files import written_whole
+
+
+@dataclass(frozen=True)
+class DeviceRecord:
+    """A device that was timed: what its driver says of it, its ceilings, and the filter's error on it.
+
+    Parameters
+    ----------
+    selector : str
+        What names it in ``PYOPENCL_CTX``.
+    platform, version, device, driver : str
+    compute_units : int
+    tuning : str
+        How the work is cut on it: the shipped choice, or what ``svgf-cl tune`` stored.
+    rms, largest : float
+        Error against the float64 oracle, relative to the picture's mean.
+    bandwidth : list of (int, float), bytes and bytes / s
+    flops : float, 1 / s
+    """
+
+    selector: str
+    platform: str
+    version: str
+    device: str
+    driver: str
+    compute_units: int
+    tuning: str
+    rms: float
+    largest: float
+    bandwidth: list[tuple[int, float]]
+    flops: float
+
+    @property
+    def ceilings(self) -> Ceilings:
+        """The limits measured in the same run."""
+        return Ceilings(self.bandwidth, self.flops)
+
+    @property
+    def label(self) -> str:
+        """Implementation and device, for headings."""
+        return f"{self.platform}: {self.device}"
+
+
+@dataclass(frozen=True)
+class Result:
+    """The samples of one benchmark by one clock on one device.
+
+    Parameters
+    ----------
+    name : str
+        Such as ``svgf.atrous.3.1280x720``.
+    device : str
+        `DeviceRecord.selector`.
+    clock : str
+        "event": the device's, from OpenCL events; "host": the caller's.
+    seconds : tuple of float
+    facts : dict
+        What was timed (stage, width, height, signals, iterations, cores) and, by the device's clock, how near it came
+        to its roofline (bytes, flops, bound in s, binds).
+    """
+
+    name: str
+    device: str
+    clock: str
+    seconds: tuple[float, ...]
+    facts: dict[str, Any] = field(default_factory=dict)
+
+    @cached_property
+    def stats(self) -> Stats:
+        """Median, quartiles and the like."""
+        stats = Stats()
+        for value in self.seconds:
+            stats.update(value)
+        return stats
+
+    @property
+    def median(self) -> float:
+        """Seconds."""
+        return float(self.stats.median)
+
+    @property
+    def roofline(self) -> float | None:
+        """Least possible time over the fastest sample: 1 is the limit; None where there is no bound."""
+        return self.facts["bound"] / min(self.seconds) if "bound" in self.facts else None
+
+    def as_json(self) -> dict[str, Any]:
+        """The benchmark as pytest-benchmark writes it."""
+        stats = self.stats.as_dict() | {"data": self.seconds, "iterations": 1}
+        return {
+            "group": f"{self.device} {self.clock}",
+            "name": self.name,
+            "fullname": f"{self.name}[{self.device}-{self.clock}]",
+            "params": {"device": self.device, "clock": self.clock},
+            "param": f"{self.device}-{self.clock}",
+            "extra_info": self.facts,
+            "options": {},
+            "stats": stats,
+        }
+
+
+@dataclass(frozen=True)
+class Run:
+    """All that one run found.
+
+    Parameters
+    ----------
+    devices : tuple of DeviceRecord
+    results : tuple of Result
+    left_out : tuple of str
+        What could not be timed, and why.
+    machine, commit : dict
+        As in pytest-benchmark: the host, and the git revision of svgf_cl.
+    date : str
+        ISO 8601, UTC.
+    """
+
+    devices: tuple[DeviceRecord, ...]
+    results: tuple[Result, ...]
+    left_out: tuple[str, ...]
+    machine: dict[str, Any]
+    commit: dict[str, Any]
+    date: str
+
+    @classmethod
+    def now(cls, devices: tuple[DeviceRecord, ...], results: tuple[Result, ...], left_out: tuple[str, ...]) -> Run:
+        """A run that ends now, on this machine, of this source."""
+        date = datetime.now(timezone.utc).isoformat(timespec="seconds")
+        return cls(devices, results, left_out, pytest_benchmark_generate_machine_info(), commit_info(), date)
+
+    @property
+    def revision(self) -> str:
+        """Version and git revision of svgf_cl, for headings."""
+        dirty = " with changes" if self.commit["dirty"] else ""
+        return f"{self.commit['version']} (git {self.commit['id'][:12]}{dirty})"
+
+    def of(self, device: DeviceRecord, **facts: Any) -> Iterator[Result]:
+        """The results on a device whose clock or facts are as given, in order."""
+        for result in self.results:
+            known = result.facts | {"clock": result.clock}
+            if result.device == device.selector and all(known.get(name) == value for name, value in facts.items()):
+                yield result
+
+    def write(self, path: Path) -> None:
+        """Write the run as JSON."""
+        document = {
+            "machine_info": self.machine | {"opencl": [asdict(device) for device in self.devices]},
+            "commit_info": self.commit,
+            "benchmarks": [result.as_json() for result in self.results],
+            "left_out": self.left_out,
+            "datetime": self.date,
+            "version": pytest_benchmark.__version__,
+        }
+        with written_whole(path) as aside:
+            aside.write_text(json.dumps(document, indent=1), encoding="utf-8")
+
+    @classmethod
+    def read(cls, path: Path) -> Run:
+        """Read what `write` wrote; `SvgfError` for any other file."""
+        try:
+            document = json.loads(path.read_text(encoding="utf-8"))
+            devices = tuple(DeviceRecord(**device) for device in document["machine_info"].pop("opencl"))
+            results = tuple(
+                Result(
+                    b["name"], b["params"]["device"], b["params"]["clock"], tuple(b["stats"]["data"]), b["extra_info"]
+                )
+                for b in document["benchmarks"]
+            )
+            left_out = tuple(document["left_out"])
+            return cls(
+                devices, results, left_out, document["machine_info"], document["commit_info"], document["datetime"]
+            )
+        except OSError as error:
+            raise SvgfError(f"{path}: cannot be read ({error.strerror})") from error
+        except (ValueError, KeyError, TypeError) as error:
+            raise SvgfError(
+                f"{path}: expected the results.json of 'svgf-cl bench', got something else ({error})"
+            ) from error
+
+
+def commit_info() -> dict[str, Any]:
+    """Version and git revision of this source, wherever the command runs; "unknown" where it is no checkout."""
+    source = Path(__file__).parent
+    command = ["git", "-C", str(source), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
+    described = subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip()
+    revision, _, dirty = described.partition("-")
+    return {"project": "svgf_cl", "version": __version__, "id": revision or "unknown", "dirty": dirty == "dirty"}

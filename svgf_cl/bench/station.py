@@ -1,0 +1,159 @@
+"""One device of a run: its ceilings, its denoisers, and what was sampled of them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from functools import cache
+from typing import Any
+
+import pyopencl as cl
+
+from svgf_cl import devices
+from svgf_cl.bench.cases import STARTS, USUAL_SHAPE, Case
+from svgf_cl.bench.ceilings import CeilingBench, Ceilings
+from svgf_cl.bench.error import error_to_oracle
+from svgf_cl.bench.results import DeviceRecord, Result
+from svgf_cl.bench.rig import EVENT, HOST, Rig, there_and_back
+from svgf_cl.bench.roofline import BINDS, Bound
+from svgf_cl.bench.startup import first_frames
+from svgf_cl.devices import DeviceReport
+from svgf_cl.errors import SvgfError
+from svgf_cl.frame import Frame, Shape
+from svgf_cl.settings import Settings
+from svgf_cl.tuning import best_tuning
+
+CEILING_SAMPLES = 3  # of each, every time
+
+
+class Station:
+    """A device with all that is to be timed on it.
+
+    Parameters
+    ----------
+    report : DeviceReport
+        Of a device that works.
+    chosen : sequence of Case
+    settings : Settings
+        Of which the error is told.
+    """
+
+    def __init__(self, report: DeviceReport, chosen: Sequence[Case], settings: Settings) -> None:
+        assert report.handle is not None
+        self.report, self.chosen, self.settings = report, chosen, settings
+        self._rigs: dict[Case, Rig] = {}
+        self.left_out: list[str] = []
+        self._starts: dict[str, list[float]] = {}
+        self._queue = devices.create_queue(report.handle)
+        self._bench = CeilingBench(self._queue)
+        self._copies: dict[int, list[float]] = {size: [] for size in self._bench.working_sets}
+        self._multiplications: list[float] = []
+
+    def set_up(self, case: Case) -> None:
+        """Make a denoiser ready, or note why that is impossible."""
+        try:
+            queue = self._queue if case.cores is None else devices.create_queue(part(self._queue.device, case.cores))
+            frames = room(case.shape, case.signals)
+            self._rigs[case] = Rig(frames, case.settings, queue, passes=not case.variant)
+        except (SvgfError, MemoryError, cl.Error) as error:  # as it may be that the device has no room
+            self.left_out.append(f"{case.name('frame')} on {self.report}: {error}")
+
+    def start(self) -> None:
+        """Time the first frame of new processes."""
+        cold, warm = first_frames(self.report, USUAL_SHAPE)
+        self._starts = dict(zip(STARTS, ([cold], warm), strict=True))
+
+    def sample(self, case: Case, seconds: float) -> None:
+        """Time a case for about so long, if it could be set up."""
+        if case in self._rigs:
+            self._rigs[case].sample(seconds)
+
+    def sample_ceilings(self) -> None:
+        """Take a few samples of each."""
+        for _ in range(CEILING_SAMPLES):
+            for size, samples in self._copies.items():
+                samples.append(self._bench.copy(size))
+            self._multiplications.append(self._bench.multiply())
+
+    def record(self) -> DeviceRecord:
+        """What the report says of the device: its ceilings, and the error."""
+        largest, rms = error_to_oracle(self.settings, queue=self._queue)
+        device = self._queue.device
+        return DeviceRecord(
+            selector=self.report.selector,
+            platform=self.report.platform,
+            version=self.report.version,
+            device=self.report.device,
+            driver=self.report.driver,
+            compute_units=device.max_compute_units,
+            tuning=str(best_tuning(device)),
+            rms=rms,
+            largest=largest,
+            bandwidth=[(size, size / min(samples)) for size, samples in self._copies.items()],
+            flops=self._bench.operations / min(self._multiplications),
+        )
+
+    def results(self, ceilings: Ceilings, pattern: re.Pattern[str]) -> Iterator[Result]:
+        """All that was sampled and asked for, ceilings too."""
+        for size, seconds in self._copies.items():
+            yield Result(f"ceiling.copy.{size}", self.report.selector, EVENT, tuple(seconds), {"bytes": size})
+        facts = {"flops": self._bench.operations}
+        yield Result("ceiling.multiply", self.report.selector, EVENT, tuple(self._multiplications), facts)
+        usual = Case(USUAL_SHAPE, self.settings)
+        for stage, values in self._starts.items():
+            if pattern.search(usual.name(stage)):
+                yield self._result(usual, stage, HOST, values)
+        for case, rig in self._rigs.items():
+            bounds = bound_facts(case, ceilings)
+            for (stage, clock), values in rig.samples.items():
+                if stage in case.stages and pattern.search(case.name(stage)):
+                    more = bounds.get(stage, {}) if clock == EVENT else {}
+                    if stage == "frame" and not case.variant:
+                        more = more | {"planes": rig.denoiser.nbytes}
+                    yield self._result(case, stage, clock, values, **more)
+
+    def _result(self, case: Case, stage: str, clock: str, seconds: Sequence[float], **more: Any) -> Result:
+        facts = {
+            "stage": stage,
+            "variant": case.variant,
+            "width": case.shape[1],
+            "height": case.shape[0],
+            "signals": case.signals,
+            "iterations": case.settings.iterations,
+            "cores": case.cores,
+        }
+        return Result(case.name(stage), self.report.selector, clock, tuple(seconds), facts | more)
+
+
+def bound_facts(case: Case, ceilings: Ceilings) -> dict[str, dict[str, Any]]:
+    """Per stage: bytes, operations, the least seconds and what binds; of several passes the sums."""
+    if case.cores is not None:  # the ceilings are those of the whole device
+        return {}
+    costs = case.costs()
+    bounds = {name: Bound.of(each, ceilings) for name, each in costs.items()}
+    groups = {name: [name] for name in costs}
+    groups["atrous"] = [name for name in costs if name.startswith("atrous ")]
+    groups["frame"] = list(costs)
+    found = {}
+    for stage, names in groups.items():
+        seconds = {term: sum(bounds[n].seconds for n in names if bounds[n].binds == term) for term in BINDS}
+        found[stage] = {
+            "bytes": sum(costs[n].bytes for n in names),
+            "flops": sum(costs[n].flops for n in names),
+            "bound": sum(seconds.values()),
+            "binds": BINDS[seconds["memory"] < seconds["arithmetic"]],
+        }
+    return found
+
+
+@cache
+def room(shape: Shape, signals: int) -> tuple[Frame, Frame]:
+    """The frames that all devices share."""
+    return there_and_back(shape, signals)
+
+
+def part(device: cl.Device, cores: int) -> cl.Device:
+    """A device of so many compute units of another."""
+    how = cl.device_partition_property
+    (division,) = device.create_sub_devices([how.BY_COUNTS, cores, how.BY_COUNTS_LIST_END])  # type: ignore[list-item]
+    return division

@@ -1,0 +1,112 @@
+"""The run over all that is timed, on every device, in turn."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field
+from itertools import chain, zip_longest
+from typing import TypeVar
+
+from svgf_cl import devices
+from svgf_cl.bench.cases import SHAPES, STARTS, USUAL_SHAPE, Case, cases
+from svgf_cl.bench.results import Run
+from svgf_cl.bench.station import Station
+from svgf_cl.devices import DeviceReport
+from svgf_cl.errors import SvgfError
+from svgf_cl.frame import Shape
+from svgf_cl.settings import Settings
+
+# Everything is sampled so many times over, in turn: what disturbs the machine for a while disturbs all alike.
+TURNS = 5
+
+Task = TypeVar("Task")
+ProgressBar = Callable[[str, int], AbstractContextManager[Callable[[], None]]]
+
+
+@dataclass(frozen=True)
+class Suite:
+    """What to time.
+
+    Parameters
+    ----------
+    pattern : re.Pattern
+        Searched for in the benchmarks' names.
+    shapes : sequence of (int, int)
+    settings : Settings
+    seconds : float, s
+        To spend on each denoiser, about; each kind of sample is taken `TURNS` times whatever it takes.
+    """
+
+    pattern: re.Pattern[str]
+    shapes: Sequence[Shape] = SHAPES
+    settings: Settings = field(default_factory=Settings)
+    seconds: float = 1.0
+
+    def run(self, progress_bar: ProgressBar) -> Run:
+        """Time everything, in turn: the same denoiser on one device after the other, then the next.
+
+        Parameters
+        ----------
+        progress_bar : callable
+            Takes a title and a number of steps; a context that gives what to call after each step.
+
+        Raises
+        ------
+        SvgfError
+            If no name matches `pattern`, or no device works (`DeviceError`).
+        """
+        stations = [self._station(report) for report in timed_devices()]
+        chosen = interleaved([[(station, case) for case in station.chosen] for station in stations])
+        starts = [stage for stage in STARTS if self.pattern.search(Case(USUAL_SHAPE, self.settings).name(stage))]
+        if not chosen and not starts:
+            raise SvgfError(
+                f"--filter: expected part of a name such as svgf.frame.1280x720, got {self.pattern.pattern}"
+            )
+        with progress_bar("setting up", len(chosen) + len(stations)) as advance:
+            for station, case in chosen:
+                station.set_up(case)
+                advance()
+            for station in stations:
+                if starts:
+                    station.start()
+                advance()
+        with progress_bar("timing", TURNS * (len(chosen) + len(stations))) as advance:
+            for _ in range(TURNS):
+                for station in stations:
+                    station.sample_ceilings()
+                    advance()
+                for station, case in chosen:
+                    station.sample(case, self.seconds / TURNS)
+                    advance()
+        with progress_bar("holding against the oracle", len(stations)) as advance:
+            records = []
+            for station in stations:
+                records.append(station.record())
+                advance()
+        results = [
+            station.results(record.ceilings, self.pattern) for station, record in zip(stations, records, strict=True)
+        ]
+        left_out = [line for station in stations for line in station.left_out]
+        return Run.now(tuple(records), tuple(chain(*results)), tuple(left_out))
+
+    def _station(self, report: DeviceReport) -> Station:
+        assert report.handle is not None
+        every = cases(report.handle, self.shapes, self.settings)
+        chosen = [case for case in every if any(self.pattern.search(case.name(stage)) for stage in case.stages)]
+        return Station(report, chosen, self.settings)
+
+
+def timed_devices() -> list[DeviceReport]:
+    """The device that ``PYOPENCL_CTX`` names, else all that work, simulators aside; `DeviceError` if there is none."""
+    reports = devices.list_devices()
+    if devices.VARIABLE in os.environ:
+        return [devices.choose(reports)]
+    return [report for report in reports if report.works and report.kind != "simulator"] or [devices.choose(reports)]
+
+
+def interleaved(columns: Sequence[Sequence[Task]]) -> list[Task]:
+    """The first of each, then the second of each, and so on."""
+    return [task for row in zip_longest(*columns) for task in row if task is not None]

@@ -1,0 +1,91 @@
+"""A run as tables of text, the same for terminal and report."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from svgf_cl.bench.results import DeviceRecord, Result, Run
+from svgf_cl.bench.rig import EVENT, HOST
+
+
+@dataclass(frozen=True)
+class Table:
+    """Words in the first column, numbers mostly in the others."""
+
+    title: str
+    columns: Sequence[str]
+    rows: Sequence[Sequence[str]]
+
+
+def milliseconds(seconds: float) -> str:
+    """Three significant digits or so of a time in s, as ms."""
+    ms = 1e3 * seconds
+    return f"{ms:.3f}" if ms < 1 else f"{ms:.2f}" if ms < 100 else f"{ms:.0f}"
+
+
+def device_table(run: Run) -> Table:
+    """What was timed on, a column each: ceilings measured in the same run, and the error."""
+    described = [describe(device) for device in run.devices]
+    rows = [(what, *(facts[what] for facts in described)) for what in described[0]]
+    return Table(
+        "ceilings measured in the same run, and the error", ("", *(device.platform for device in run.devices)), rows
+    )
+
+
+def describe(device: DeviceRecord) -> dict[str, str]:
+    """A device in words."""
+    return {
+        "device": device.device,
+        "version": device.version,
+        "driver": device.driver,
+        "compute units": str(device.compute_units),
+        "tuning": device.tuning,
+        "copy in cache, GB/s": f"{1e-9 * max(speed for _, speed in device.bandwidth):.0f}",
+        "copy out of cache, GB/s": f"{1e-9 * device.bandwidth[-1][1]:.0f}",
+        "multiply-add, GFLOP/s": f"{1e-9 * device.flops:.0f}",
+        "error to the float64 oracle, rms": f"{device.rms:.1e}",
+        "error to the float64 oracle, largest": f"{device.largest:.1e}",
+    }
+
+
+def stage_table(run: Run, device: DeviceRecord) -> Table:
+    """Every benchmark on a device, event and host time side by side."""
+    columns = ("benchmark", "event ms", "host ms", "roofline %", "binds", "bytes/px", "flop/px", "rounds")
+    by_name: dict[str, dict[str, Result]] = {}
+    for result in run.of(device):
+        if "stage" in result.facts:
+            by_name.setdefault(result.name, {})[result.clock] = result
+    title = f"{device.platform}, {device.device}: median and half the interquartile range"
+    return Table(title, columns, [stage_row(name, clocks) for name, clocks in by_name.items()])
+
+
+def stage_row(name: str, clocks: dict[str, Result]) -> tuple[str, ...]:
+    """One benchmark by both clocks; a dash for what was not measured."""
+    event, host = clocks.get(EVENT), clocks.get(HOST)
+    rounds = str((event or clocks[HOST]).stats.rounds)
+    return (name, spread(event), spread(host), *limits(event), rounds)
+
+
+def spread(result: Result | None) -> str:
+    """Median and half the interquartile range, this in percent of the median."""
+    if result is None:
+        return "-"
+    return f"{milliseconds(result.median)} ±{50 * result.stats.iqr / result.median:.0f}%"
+
+
+def limits(result: Result | None) -> tuple[str, str, str, str]:
+    """How near a stage came to its roofline, what binds it, and what it costs per pixel."""
+    if result is None or result.roofline is None:
+        return "-", "-", "-", "-"
+    facts = result.facts
+    pixels = facts["width"] * facts["height"]
+    share = f"{100 * result.roofline:.0f}", facts["binds"]
+    return *share, f"{facts['bytes'] / pixels:.0f}", f"{facts['flops'] / pixels:.0f}"
+
+
+def memory_table(run: Run) -> Table:
+    """Device memory that a denoiser holds."""
+    held = {(r.facts["width"], r.facts["height"]): r.facts["planes"] for r in run.results if "planes" in r.facts}
+    rows = [(f"{width}x{height}", f"{planes / 1e6:.0f}") for (width, height), planes in held.items()]
+    return Table("device memory of a denoiser", ("size", "MB"), rows)

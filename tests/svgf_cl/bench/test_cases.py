@@ -1,0 +1,47 @@
+"""Names say what was timed."""
+
+from __future__ import annotations
+
+import pyopencl as cl
+
+from svgf_cl import Settings
+from svgf_cl.bench.cases import SHAPES, USUAL_SHAPE, Case, cases, core_counts
+
+
+def test_names() -> None:
+    case = Case((1080, 1920), Settings())
+    names = [case.name(stage) for stage in case.stages]
+    assert {"svgf.demodulate.1920x1080", "svgf.atrous.1920x1080", "svgf.atrous.3.1920x1080"} <= set(names)
+    assert {"svgf.frame.1920x1080", "svgf.frame.numpy.1920x1080", "svgf.enqueue.1920x1080"} <= set(names)
+    assert len(set(names)) == len(names)
+    assert Case((4, 3), Settings(), variant="signals2").name("frame") == "svgf.frame.signals2.3x4"
+
+
+def test_only_one_thing_varies_at_a_time(queue: cl.CommandQueue) -> None:
+    found = list(cases(queue.device, SHAPES, Settings()))
+    assert [case.shape for case in found if not case.variant] == list(SHAPES)
+    for case in (case for case in found if case.variant):
+        unusual = [case.settings != Settings(), case.signals != 1, case.cores is not None]
+        assert case.shape == USUAL_SHAPE
+        assert sum(unusual) <= 1
+        assert case.stages == ["frame"]
+
+
+class Divisible:
+    """A device of six compute units."""
+
+    max_compute_units = 6
+
+    def __init__(self, *ways: int) -> None:
+        self.partition_properties = list(ways)
+
+
+def test_cores_double_up_to_all() -> None:
+    assert core_counts(Divisible(cl.device_partition_property.BY_COUNTS)) == [1, 2, 4, 6]
+    assert core_counts(Divisible(0)) == []
+
+
+def test_costs_are_those_of_the_whole_image() -> None:
+    small, large = Case((10, 10), Settings()).costs(), Case((20, 10), Settings()).costs()
+    assert small.keys() == large.keys()
+    assert all(large[name] == small[name] * 2 for name in small)

@@ -1,0 +1,37 @@
+"""Tables say what the run holds, and a dash where it holds nothing."""
+
+from __future__ import annotations
+
+import pytest
+
+from svgf_cl.bench.tables import device_table, memory_table, milliseconds, stage_table
+from tests.svgf_cl.bench.runs import whole_run
+
+
+@pytest.mark.parametrize(("seconds", "text"), [(1.2345e-4, "0.123"), (0.0123, "12.30"), (1.5, "1500")])
+def test_milliseconds(seconds: float, text: str) -> None:
+    assert milliseconds(seconds) == text
+
+
+def test_speed_stands_beside_error() -> None:
+    table = device_table(whole_run())
+    assert table.columns == ("", "Alpha")
+    assert [value for _, value in table.rows[-5:]] == ["100", "10", "400", "1.5e-07", "9.0e-07"]
+
+
+def test_event_and_host_time_share_a_row() -> None:
+    run = whole_run()
+    rows = {row[0]: row[1:] for row in stage_table(run, run.devices[0]).rows}
+    assert rows["svgf.temporal.1280x720"] == ("6.50 ±23%", "7.50 ±20%", "80", "arithmetic", "11", "1085", "2")
+    assert rows["svgf.enqueue.1280x720"] == ("-", "7.50 ±20%", "-", "-", "-", "-", "2")
+
+
+def test_memory_by_size() -> None:
+    assert memory_table(whole_run()).rows == [("1280x720", "100"), ("1280x1440", "100")]
+
+
+def test_every_row_fits_its_columns() -> None:
+    run = whole_run()
+    for table in (device_table(run), stage_table(run, run.devices[0]), memory_table(run)):
+        assert table.rows
+        assert all(len(row) == len(table.columns) for row in table.rows)
