@@ -59,7 +59,7 @@ INLINE Position foremost(const int4 size, int x, int y, __global const float *de
     return p;
 }
 
-__kernel void taa(const int4 size, const float alpha_taa, __global const float *restrict motion,
+KERNEL taa(const int4 size, const float alpha_taa, __global const float *restrict motion,
                   __global const float *restrict guide, __global const float *restrict moments,
                   __global const float *restrict color, __global const float *restrict history,
                   __global float *restrict next_history, __global float *restrict out) {
@@ -115,6 +115,7 @@ __kernel void taa(const int4 size, const float alpha_taa, __global const float *
     const floatv base = t.channel[0] - t.channel[2];
     const floatv rgb[3] = {base + t.channel[1], t.channel[0] + t.channel[2], base - t.channel[1]};
     const floatv scale = 1.0f / max(1.0f - t.channel[0], (floatv)(1e-6f));
-    UNROLLED_FOR(k, 3)
-        scatter(max(rgb[k] * scale, (floatv)(0.0f)), size, x, y, k, out);
+    Color c;
+    UNROLLED_FOR(k, 3) c.channel[k] = max(rgb[k] * scale, (floatv)(0.0f));
+    store_color(c, size, x, y, out);
 }

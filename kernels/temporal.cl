@@ -26,10 +26,13 @@ typedef struct {
 #endif
 } Expected;
 
+// The previous frame at a tap.
 typedef struct {
-    Places at;
-    floatv weight;
-} Tap;
+    floatv depth, normal[3], length, color[SIGNALS][3], mean[SIGNALS], variance[SIGNALS];
+#if HAS_ID
+    intv id;
+#endif
+} Past;
 
 // Weighted mean over the taps seen so far.
 typedef struct {
@@ -39,24 +42,16 @@ typedef struct {
 INLINE Expected expect(const int4 size, int x, int y, __global const float *motion, __global const float *guide,
                        float depth_threshold) {
     const int here = at(size, x, y);
-    const intv i = interleaved(size, x, y, MOTION);
-    const floatv mx = gather(motion, i), my = gather(motion, i + 1);
-    intv good = isfinite(mx) & isfinite(my);
-#if MOTION == 3
-    const floatv mz = gather(motion, i + 2);
-    good &= isfinite(mz);
-#else
-    const floatv mz = (floatv)(0.0f);
-#endif
-    const floatv depth = load(guide + DEPTH * size.w + here) + mz;
-    good &= isfinite(depth);
+    const Color m = load_motion(size, x, y, motion);
+    const floatv depth = load(guide + DEPTH * size.w + here) + m.channel[2];
+    const intv good = isfinite(m.channel[0]) & isfinite(m.channel[1]) & isfinite(depth);
     Expected e;
-    const floatv safe_x = where(good, clamp(mx, -FAR, FAR), (floatv)(FAR));
-    const floatv safe_y = where(good, clamp(my, -FAR, FAR), (floatv)(FAR));
-    e.left = x + LANES + to_int(floor(safe_x));
-    e.top = y + to_int(floor(safe_y));
-    e.fx = safe_x - floor(safe_x);
-    e.fy = safe_y - floor(safe_y);
+    const floatv mx = where(good, clamp(m.channel[0], -FAR, FAR), (floatv)(FAR));
+    const floatv my = where(good, clamp(m.channel[1], -FAR, FAR), (floatv)(FAR));
+    e.left = x + LANES + to_int(floor(mx));
+    e.top = y + to_int(floor(my));
+    e.fx = mx - floor(mx);
+    e.fy = my - floor(my);
     e.depth = depth;
     e.gradient = depth_gradient(guide + DEPTH * size.w, size.z, here);
     e.tolerance = depth_threshold * e.depth + fabs(e.gradient.x) + fabs(e.gradient.y);
@@ -67,22 +62,38 @@ INLINE Expected expect(const int4 size, int x, int y, __global const float *moti
     return e;
 }
 
-// The tap (dx, dy) off the top left of the footprint, its weight 0 unless it shows the expected surface. Positions outside
-// the image are moved into the halo, where nothing was hit.
-INLINE Tap consistent_tap(const int4 size, Expected e, intv dx, intv dy, floatv weight,
-                          __global const float *previous_guide, float normal_threshold) {
-    Tap tap;
-    tap.at = places(at_lanes(size, clamp(e.left + dx, -1, size.x), clamp(e.top + dy, -1, size.y)));
-    const floatv z = fetch(previous_guide + DEPTH * size.w, tap.at);
-    const floatv expected = e.depth + e.gradient.x * (to_float(dx) - e.fx) + e.gradient.y * (to_float(dy) - e.fy);
-    floatv cosine = (floatv)(0.0f);
-    UNROLLED_FOR(k, 3) cosine += e.normal[k] * fetch(previous_guide + (NORMAL + k) * size.w, tap.at);
-    intv same = (z > 0.0f) & (fabs(z - expected) <= e.tolerance) & (cosine >= normal_threshold);
+// Pixels around which taps are taken: one outside the image is moved to where all its taps lie in the halo.
+INLINE Places around(const int4 size, intv x, intv y) {
+    return places(at_lanes(size, clamp(x, -2, size.x + 1), clamp(y, -2, size.y + 1)));
+}
+
+INLINE Past read_past(const int4 size, Places at, __global const float *guide, __global const float *history,
+                      __global const float *moments) {
+    Past p;
+    p.depth = fetch(guide + DEPTH * size.w, at);
+    UNROLLED_FOR(k, 3) p.normal[k] = fetch(guide + (NORMAL + k) * size.w, at);
 #if HAS_ID
-    same &= fetch_int((__global const int *)previous_guide + ID * size.w, tap.at) == e.id;
+    p.id = fetch_int((__global const int *)guide + ID * size.w, at);
 #endif
-    tap.weight = where(same, weight, (floatv)(0.0f));
-    return tap;
+    p.length = fetch(moments + LENGTH * size.w, at);
+    UNROLLED_FOR(s, SIGNALS) {
+        UNROLLED_FOR(k, 3) p.color[s][k] = fetch(history + (3 * s + k) * size.w, at);
+        p.mean[s] = fetch(moments + (MOMENTS + 2 * s) * size.w, at);
+        p.variance[s] = fetch(moments + (MOMENTS + 2 * s + 1) * size.w, at);
+    }
+    return p;
+}
+
+// Whether a tap that lies (dx, dy) off p' shows the expected surface.
+INLINE intv consistent(Expected e, Past tap, floatv dx, floatv dy, float normal_threshold) {
+    const floatv expected = e.depth + e.gradient.x * dx + e.gradient.y * dy;
+    floatv cosine = (floatv)(0.0f);
+    UNROLLED_FOR(k, 3) cosine += e.normal[k] * tap.normal[k];
+    intv same = (tap.depth > 0.0f) & (fabs(tap.depth - expected) <= e.tolerance) & (cosine >= normal_threshold);
+#if HAS_ID
+    same &= tap.id == e.id;
+#endif
+    return same;
 }
 
 INLINE History no_history(void) {
@@ -96,17 +107,15 @@ INLINE History no_history(void) {
 }
 
 // Mixes in one tap. The variance of a mixture is the mean of the variances plus the spread of the means.
-INLINE void add_tap(History *h, const int4 size, Tap tap, __global const float *history, __global const float *moments) {
-    h->weight += tap.weight;
-    const floatv share = where(h->weight > 0.0f, tap.weight / h->weight, (floatv)(0.0f));
-    h->length += share * (fetch(moments + LENGTH * size.w, tap.at) - h->length);
+INLINE void add_tap(History *h, Past tap, floatv weight) {
+    h->weight += weight;
+    const floatv share = where(h->weight > 0.0f, weight / h->weight, (floatv)(0.0f));
+    h->length += share * (tap.length - h->length);
     UNROLLED_FOR(s, SIGNALS) {
-        UNROLLED_FOR(k, 3)
-            h->color[s][k] += share * (fetch(history + (3 * s + k) * size.w, tap.at) - h->color[s][k]);
-        __global const float *mean = moments + (MOMENTS + 2 * s) * size.w, *variance = mean + size.w;
-        const floatv off = fetch(mean, tap.at) - h->mean[s];
+        UNROLLED_FOR(k, 3) h->color[s][k] += share * (tap.color[s][k] - h->color[s][k]);
+        const floatv off = tap.mean[s] - h->mean[s];
         h->mean[s] += share * off;
-        h->variance[s] += share * (fetch(variance, tap.at) - h->variance[s] + (1.0f - share) * off * off);
+        h->variance[s] += share * (tap.variance[s] - h->variance[s] + (1.0f - share) * off * off);
     }
 }
 
@@ -121,12 +130,12 @@ INLINE History select_history(intv mask, History yes, History no) {
     return yes;
 }
 
-__kernel void temporal(const int4 size, const float alpha_color, const float alpha_moments, const float depth_threshold,
-                       const float normal_threshold, __global const float *restrict motion,
-                       __global const float *restrict guide, __global const float *restrict illumination,
-                       __global const float *restrict previous_guide, __global const float *restrict history,
-                       __global const float *restrict previous_moments, __global float *restrict accumulated,
-                       __global float *restrict moments) {
+KERNEL temporal(const int4 size, const float alpha_color, const float alpha_moments, const float depth_threshold,
+                const float normal_threshold, __global const float *restrict motion,
+                __global const float *restrict guide, __global const float *restrict illumination,
+                __global const float *restrict previous_guide, __global const float *restrict history,
+                __global const float *restrict previous_moments, __global float *restrict accumulated,
+                __global float *restrict moments) {
     const int x = first_column(), y = row();
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
@@ -134,22 +143,28 @@ __kernel void temporal(const int4 size, const float alpha_color, const float alp
     const intv hit = load(guide + DEPTH * size.w + here) > 0.0f;
 
     History h = no_history();
+    const Places corner = around(size, e.left, e.top);
     UNROLLED_FOR(t, 4) {
-        const floatv w = (t & 1 ? e.fx : 1.0f - e.fx) * (t & 2 ? e.fy : 1.0f - e.fy);
-        const Tap tap = consistent_tap(size, e, (intv)(t & 1), (intv)(t >> 1), w, previous_guide, normal_threshold);
-        add_tap(&h, size, tap, history, previous_moments);
+        const int dx = t & 1, dy = t >> 1;
+        const Past tap = read_past(size, beside(corner, dx + dy * size.z), previous_guide, history, previous_moments);
+        const floatv w = (dx ? e.fx : 1.0f - e.fx) * (dy ? e.fy : 1.0f - e.fy);
+        const intv same = consistent(e, tap, (float)dx - e.fx, (float)dy - e.fy, normal_threshold);
+        add_tap(&h, tap, where(same, w, (floatv)(0.0f)));
     }
 
     const intv lost = hit & (h.weight <= 0.01f);
     if (any_lane(lost)) {  // thin geometry: look around
-        const intv nx = to_int(floor(e.fx + 0.5f)), ny = to_int(floor(e.fy + 0.5f));
-        History around = no_history();
-        for (int t = 0; t < 9; ++t) {
-            const Tap tap = consistent_tap(size, e, nx + (t % 3 - 1), ny + (t / 3 - 1), (floatv)(1.0f), previous_guide,
-                                           normal_threshold);
-            add_tap(&around, size, tap, history, previous_moments);
+        const floatv nx = floor(e.fx + 0.5f), ny = floor(e.fy + 0.5f);
+        const Places nearest = around(size, e.left + to_int(nx), e.top + to_int(ny));
+        History nine = no_history();
+        for (int dy = -1; dy <= 1; ++dy) {
+            for (int dx = -1; dx <= 1; ++dx) {
+                const Past tap = read_past(size, beside(nearest, dx + dy * size.z), previous_guide, history, previous_moments);
+                const intv same = consistent(e, tap, nx + (float)dx - e.fx, ny + (float)dy - e.fy, normal_threshold);
+                add_tap(&nine, tap, where(same, (floatv)(1.0f), (floatv)(0.0f)));
+            }
         }
-        h = select_history(lost, around, h);
+        h = select_history(lost, nine, h);
     }
 
     const intv known = hit & (h.weight > 0.01f);
@@ -165,7 +180,7 @@ __kernel void temporal(const int4 size, const float alpha_color, const float alp
             const floatv blended = h.color[s][k] + a_color * (c[k] - h.color[s][k]);
             store(where(known, blended, c[k]), accumulated + plane + here);
         }
-        const floatv l = luminance(c[0], c[1], c[2]), d = l - h.mean[s];
+        const floatv l = c[LUMINANCE], d = l - h.mean[s];
         const floatv mean = where(known, h.mean[s] + a_moments * d, l);
         const floatv variance = where(known, (1.0f - a_moments) * (h.variance[s] + a_moments * d * d), (floatv)(0.0f));
         store(mean, moments + (MOMENTS + 2 * s) * size.w + here);

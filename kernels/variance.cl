@@ -28,22 +28,15 @@ INLINE void add_tap(Moments *sum, floatv w, const int4 size, int tap, const floa
 
 // Sums over the neighbourhood. They are taken about the centre's own mean: the centre is one of the samples, so the
 // variance is never small against the shift and the difference does not cancel.
-INLINE Moments neighbourhood(const int4 size, int here, float sigma_depth, float slope_floor, const floatv *centre,
+INLINE Moments neighbourhood(const int4 size, int here, Surface surface, const floatv *centre,
                              __global const float *guide, __global const float *moments) {
-    __global const float *depth = guide + DEPTH * size.w;
-    const floatv z = load(depth + here);
-    const Gradient g = depth_gradient(depth, size.z, here);
     Moments sum;
     sum.weight = (floatv)(0.0f);
     UNROLLED_FOR(s, SIGNALS) sum.first[s] = sum.second[s] = (floatv)(0.0f);
     for (int dy = -RADIUS; dy <= RADIUS; ++dy) {
         for (int dx = -RADIUS; dx <= RADIUS; ++dx) {
             const int tap = here + dy * size.z + dx;
-            const floatv scale = depth_scale(g, z, sigma_depth, slope_floor, (float)dx, (float)dy);
-            floatv cosine = (floatv)(0.0f);
-            UNROLLED_FOR(k, 3)
-                cosine += load(guide + (NORMAL + k) * size.w + here) * load(guide + (NORMAL + k) * size.w + tap);
-            floatv w = normal_weight(cosine) * exp_minus(fabs(z - load(depth + tap)) * scale);
+            floatv w = weight(surface_exponent(surface, depth_scale(surface, dx, dy), 0.0f, size, tap, guide));
             if (dx == 0 && dy == 0) w = (floatv)(1.0f);
             add_tap(&sum, w, size, tap, centre, moments);
         }
@@ -51,9 +44,9 @@ INLINE Moments neighbourhood(const int4 size, int here, float sigma_depth, float
     return sum;
 }
 
-__kernel void variance(const int4 size, const float sigma_depth, const float depth_slope_floor,
-                       __global const float *restrict guide, __global const float *restrict moments,
-                       __global float *restrict illumination) {
+KERNEL variance(const int4 size, const float sigma_depth, const float sigma_normal,
+                const float depth_slope_floor, __global const float *restrict guide,
+                __global const float *restrict moments, __global float *restrict illumination) {
     const int x = first_column(), y = row();
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
@@ -65,7 +58,8 @@ __kernel void variance(const int4 size, const float sigma_depth, const float dep
         result[s] = load(moments + (MOMENTS + 2 * s + 1) * size.w + here);
     }
     if (any_lane(brief)) {
-        const Moments sum = neighbourhood(size, here, sigma_depth, depth_slope_floor, centre, guide, moments);
+        const Surface surface = surface_at(size, here, 1.0f, sigma_depth, sigma_normal, depth_slope_floor, guide);
+        const Moments sum = neighbourhood(size, here, surface, centre, guide, moments);
         const floatv boost = LONG_HISTORY / max(length, (floatv)(1.0f));
         UNROLLED_FOR(s, SIGNALS) {
             const floatv off = sum.first[s] / sum.weight;

@@ -20,7 +20,7 @@ MACROS = {
     "HAS_EMISSION": (0, 1),
     "HAS_ID": (0, 1),
     "TAA": (0, 1),
-    "LOG2_SIGMA_NORMAL": (0, 7),
+    "FAST": (0, 1),
 }
 # -Wundef: a macro that a kernel reads and this table lacks is an error, never a silent 0.
 LANGUAGE = ("-x", "cl", "-cl-std=CL1.2", "-target", "spir64", "-Xclang", "-finclude-default-header")

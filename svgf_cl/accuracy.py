@@ -18,7 +18,8 @@ Single = NDArray[np.float32]
 Array = NDArray[np.float64]
 
 # An error counts against the value plus this share of the stage's mean: a relative error where there is something to be
-# relative to, an absolute one near zero.
+# relative to, an absolute one near zero. Of a colour, the value is the greatest of its channels: kernels keep luminance
+# in place of green, and a green that hardly contributes to it cannot be known as well.
 SCALE_SHARE = 1e-3
 # A pixel further off than this was decided otherwise (a tap accepted or refused within rounding of a threshold).
 DECISION = 1e-3
@@ -76,7 +77,8 @@ def deviations(
         previous = None if guides is None else History(guides, past)
         guides = seen_guides(frame, now)
         for stage, expected in oracle_stages(frame, guides, now, previous, settings):
-            errors.setdefault(stage, []).append(relative_error(now[stage], expected).ravel())
+            size = largest_channel(expected) if expected.shape[-3:] == (*frame.shape, 3) else np.abs(expected)
+            errors.setdefault(stage, []).append(relative_error(now[stage], expected, size).ravel())
         past = now
     return {stage: summary(stage, np.concatenate(parts)) for stage, parts in errors.items()}
 
@@ -147,9 +149,15 @@ def wide(values: Single) -> Array:
     return values.astype(np.float64)
 
 
-def relative_error(got: Single, expected: Array) -> Array:
-    """|got - expected| / (|expected| + `SCALE_SHARE` of the mean |expected|), of the same shape."""
-    size = np.abs(expected)
+def largest_channel(colors: Array) -> Array:
+    """The greatest |channel| of each colour: (..., 3) to (..., 1)."""
+    largest: Array = np.abs(colors).max(axis=-1, keepdims=True)
+    return largest
+
+
+def relative_error(got: Single, expected: Array, size: Array | None = None) -> Array:
+    """|got - expected| / (size + `SCALE_SHARE` of its mean), of the same shape; the size is |expected| if not given."""
+    size = np.abs(expected) if size is None else size
     scale = SCALE_SHARE * size.mean() or 1.0
     error: Array = np.abs(got - expected) / (size + scale)
     return error

@@ -29,6 +29,7 @@ class Launch:
 
     entry: Pass
     kernel: cl.Kernel
+    work_items: tuple[int, int]
     constants: tuple[Any, ...]
 
 
@@ -89,7 +90,6 @@ class Denoiser:
         self.queue = check_queue(queue)
         self.tuning = check_tuning(tuning, self.queue.device)
         self._layout = layout_of(self.shape, self.tuning.row_alignment)
-        self._work_items = self._layout.work_items(self.tuning.vector_width, self.tuning.work_group)
         self._keep_stages = keep_stages
         self._uploads = Uploads(self.queue)
         self._plan: Plan | None = None
@@ -206,12 +206,13 @@ class Denoiser:
         scalars += [np.float32(getattr(self.settings, name)) for name in entry.settings]
         kernel = cl.Kernel(program, entry.kernel)
         check_work_group(kernel, self.queue.device, self.tuning)
-        return Launch(entry, kernel, (self._layout.size, *scalars))
+        work_items = self._layout.work_items(self.tuning.vector_width, self.tuning.work_group, entry.step or 1)
+        return Launch(entry, kernel, work_items, (self._layout.size, *scalars))
 
     def _run(self, launch: Launch, planes: Buffers, user: dict[str, cl.Buffer]) -> cl.Event:
         names = (*launch.entry.reads, *launch.entry.writes)
         arguments = [user[name] if name in user else planes[name] for name in names]
-        return launch.kernel(self.queue, self._work_items, self.tuning.work_group, *launch.constants, *arguments)
+        return launch.kernel(self.queue, launch.work_items, self.tuning.work_group, *launch.constants, *arguments)
 
     def _result(self, frame: Frame) -> Any:
         """A new array for the result, of the same kind as the frame's."""

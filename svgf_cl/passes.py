@@ -130,7 +130,7 @@ def pipeline(inputs: Inputs, settings: Settings) -> tuple[Pass, ...]:
             "variance",
             reads=("guide", "moments"),
             writes=("accumulated",),
-            settings=("sigma_depth", "depth_slope_floor"),
+            settings=("sigma_depth", "sigma_normal", "depth_slope_floor"),
         ),
         *atrous_levels(settings.iterations),
         Pass(
@@ -158,7 +158,7 @@ def atrous_levels(iterations: int) -> Iterator[Pass]:
             "atrous",
             reads=("guide", level_buffer(level - 1)),
             writes=(level_buffer(level),),
-            settings=("sigma_depth", "sigma_luminance", "depth_slope_floor"),
+            settings=("sigma_depth", "sigma_normal", "sigma_luminance", "depth_slope_floor"),
             level=level,
         )
 

@@ -31,7 +31,7 @@ class Layout:
     @property
     def pitch(self) -> int:
         """Elements from one row to the next."""
-        aligned = -(-(self.width + 2 * HALO) // self.row_alignment) * self.row_alignment
+        aligned = rounded_up(self.width + 2 * HALO, self.row_alignment)
         return aligned if aligned % PAGE else aligned + self.row_alignment
 
     @property
@@ -44,10 +44,13 @@ class Layout:
         """Elements of a plane."""
         return self.rows * self.pitch
 
-    def work_items(self, vector_width: int, group: tuple[int, int]) -> tuple[int, int]:
-        """Vectors along a row and rows, each rounded up to whole work-groups; kernels skip those outside the image."""
-        vectors = -(-self.width // vector_width)
-        return -(-vectors // group[0]) * group[0], -(-self.height // group[1]) * group[1]
+    def work_items(self, vector_width: int, group: tuple[int, int], step: int = 1) -> tuple[int, int]:
+        """Vectors along a row and rows, each rounded up to whole work-groups; kernels skip those outside the image.
+
+        Rows are rounded up to whole steps first: atrous.cl goes through every `step`-th of them in turn.
+        """
+        rows = rounded_up(self.height, step)
+        return rounded_up(-(-self.width // vector_width), group[0]), rounded_up(rows, group[1])
 
     @property
     def indexable(self) -> bool:
@@ -67,3 +70,8 @@ class Layout:
         """The image inside: (n * plane,) -> (n, height, width), a view."""
         stack = planes.reshape(-1, self.rows, self.pitch)
         return stack[:, HALO : HALO + self.height, HALO : HALO + self.width]
+
+
+def rounded_up(length: int, unit: int) -> int:
+    """The least multiple of `unit` that is no less than `length`."""
+    return -(-length // unit) * unit

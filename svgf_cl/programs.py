@@ -21,7 +21,7 @@ import pyopencl as cl
 
 from svgf_cl.errors import DeviceError
 
-HEADER = "common.clh"
+HEADERS = ("common.clh", "interleaved.clh", "surface.clh")
 
 # No fast-math: it would allow the compiler to drop the guards against NaN and infinity. Weights too small to count are
 # denormal numbers, and slow: without them an a-trous level takes a seventh less time on traced frames.
@@ -41,7 +41,7 @@ def stages() -> list[str]:
 def source(stage: str) -> str:
     """Return a stage's whole source: the shared header, then the stage's own file."""
     kernels = resources.files("svgf_cl.kernels")
-    names = (HEADER, f"{stage}.cl")
+    names = (*HEADERS, f"{stage}.cl")
     return "\n".join(f'#line 1 "{name}"\n{(kernels / name).read_text(encoding="utf-8")}' for name in names)
 
 

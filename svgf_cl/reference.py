@@ -222,7 +222,7 @@ def surface_weight(guides: Guides, gradient: Array, offset: Offset, step: int, s
     slope = settings.sigma_depth * np.abs(gradient @ np.array(offset))
     slope += settings.depth_slope_floor * guides.depth * max(abs(dx), abs(dy))
     w_z = np.exp(-np.abs(guides.depth - guides.depth[y, x]) / (step * np.where(hits, slope, 1)))
-    w_n = np.maximum(0, dot(guides.normal, guides.normal[y, x])) ** settings.sigma_normal
+    w_n = np.exp(settings.sigma_normal * (dot(guides.normal, guides.normal[y, x]) - 1))
     return np.where(hits, w_z * w_n, 0)
 
 

@@ -11,7 +11,7 @@ from svgf_cl.errors import SettingsError
 RANGES: dict[str, tuple[float, float]] = {
     "iterations": (1, 5),
     "sigma_depth": (1e-3, 1e3),
-    "sigma_normal": (1, 1024),
+    "sigma_normal": (16, 1024),
     "sigma_luminance": (1e-3, 1e3),
     "depth_slope_floor": (1e-6, 1.0),
     "alpha_color": (0.0, 1.0),
@@ -19,6 +19,11 @@ RANGES: dict[str, tuple[float, float]] = {
     "depth_threshold": (0.0, 1.0),
     "normal_threshold": (-1.0, 1.0),
     "alpha_taa": (0.0, 1.0),
+}
+
+# What each setting that is a word may be.
+CHOICES: dict[str, tuple[str, ...]] = {
+    "precision": ("precise", "fast"),
 }
 
 
@@ -32,8 +37,9 @@ class Settings:
         A-trous levels; each doubles the filter's reach. 5 as in the paper: taps up to 62 pixels away, enough for 1 spp.
     sigma_depth : float, 1e-3..1e3
         Tolerated depth difference in units of the surface's own slope. 1 as in the paper (section 4.4).
-    sigma_normal : int, power of two, 1..1024
-        Exponent of the normals' cosine. 128 as in the paper; a power of two because the kernel squares repeatedly.
+    sigma_normal : float, 16..1024
+        How sharply normals are told apart: the weight falls to 1/e at a cosine of 1 - 1/sigma_normal. 128, 7 degrees:
+        for such angles the same as the paper's cosine to the power of 128.
     sigma_luminance : float, standard deviations, 1e-3..1e3
         Tolerated luminance difference, in units of its estimated noise. 4 as in the paper (section 4.4).
     depth_slope_floor : float, depth per depth and pixel, 1e-6..1
@@ -55,11 +61,14 @@ class Settings:
     alpha_taa : float, 0..1
         Share of the new frame in the antialiased picture. 0.2: on the moving demo 0.8 dB better than the usual 0.1, for
         each resampling of the history softens it; less suits a still camera.
+    precision : "precise" or "fast"
+        Weights of the a-trous filter and the spatial variance: exponentials to 4e-6, or with straight lines between the
+        powers of two, up to 6 % larger.
     """
 
     iterations: int = 5
     sigma_depth: float = 1.0
-    sigma_normal: int = 128
+    sigma_normal: float = 128.0
     sigma_luminance: float = 4.0
     depth_slope_floor: float = 1e-3
     alpha_color: float = 0.2
@@ -68,21 +77,28 @@ class Settings:
     normal_threshold: float = 0.9
     taa: bool = False
     alpha_taa: float = 0.2
+    precision: str = "precise"
 
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
             if field.name in RANGES:
                 check_number(field.name, value, whole=isinstance(field.default, int))
+            elif field.name in CHOICES:
+                if value not in CHOICES[field.name]:
+                    raise SettingsError(f"Settings.{field.name}: expected {describe_choice(field.name)}, got {value!r}")
             elif not isinstance(value, bool):
                 raise SettingsError(f"Settings.{field.name}: expected True or False, got {value!r}")
-        if self.sigma_normal & (self.sigma_normal - 1):
-            raise SettingsError(f"Settings.sigma_normal: expected a power of two, got {self.sigma_normal}")
 
     @property
     def defines(self) -> dict[str, int]:
         """The kernels' macros; every other setting is an argument, so that tuning it compiles nothing."""
-        return {"LOG2_SIGMA_NORMAL": int(self.sigma_normal).bit_length() - 1, "TAA": int(self.taa)}
+        return {"FAST": int(self.precision == "fast"), "TAA": int(self.taa)}
+
+
+def describe_choice(name: str) -> str:
+    """The values of a setting that is a word: ``'precise' or 'fast'``."""
+    return " or ".join(repr(choice) for choice in CHOICES[name])
 
 
 def check_number(name: str, value: object, *, whole: bool) -> None:

@@ -20,14 +20,14 @@ TOLERANCES = {
     "normal": 4e-7,  # a handful of roundings
     "depth": 0.0,  # copied
     "demodulated": 4e-7,
-    "modulated": 4e-7,
+    "modulated": 1e-5,  # green is a difference of luminance and the rest
     "history_length": 4e-7,
     "accumulated": 5e-6,  # a dim mean of bright taps, each off by a rounding
     "mean": 2e-5,
     "moment_variance": 4e-5,  # squares of differences
-    "variance": 4e-5,  # the cosine to the power of 128, and exp of up to -80 amplify a rounding that often
-    "level": 3e-5,
-    "level_variance": 4e-5,  # the same weights squared
+    "variance": 2e-4,  # 128 times the cosine, and exp of up to -80 amplify a rounding that often
+    "level": 1.5e-4,
+    "level_variance": 2e-4,  # the same weights squared
     "antialiased": 1.5e-4,  # chroma is a small difference of large numbers
     "resolved": 5e-5,  # inverting the tone map amplifies by 1 + Y
 }
@@ -36,8 +36,8 @@ TOLERANCES = {
 DECIDED_OTHERWISE = 5e-4
 
 # The whole pipeline over a sequence against the whole oracle: errors of one frame are the next frame's input, yet they
-# do not build up, as the filter is an average. Measured: 3e-5.
-PIPELINE_TOLERANCE = 1e-4
+# do not build up, as the filter is an average. Measured: 3e-5, and 1e-4 with sigma_normal 1024.
+PIPELINE_TOLERANCE = 3e-4
 
 
 @dataclass(frozen=True)
@@ -72,8 +72,8 @@ CASES = {
     "traced": Case(partial(traced_sequence, FULL)),
     "traced, antialiased": Case(partial(traced_sequence, SPLIT), Settings(taa=True)),
     "albedo alone": Case(partial(bumpy_sequence, ("color", "albedo")), width=1),
-    "emission alone": Case(partial(bumpy_sequence, ("color", "emission"), motion=2), Settings(sigma_normal=1), 4),
-    "ids alone": Case(partial(bumpy_sequence, ("color", "id"), motion=2), Settings(sigma_normal=8), 1),
+    "emission alone": Case(partial(bumpy_sequence, ("color", "emission"), motion=2), Settings(sigma_normal=16), 4),
+    "ids alone": Case(partial(bumpy_sequence, ("color", "id"), motion=2), Settings(sigma_normal=32), 1),
     "plain split": Case(partial(bumpy_sequence, SPLIT[:2], motion=2), Settings(taa=True), 8),
 }
 

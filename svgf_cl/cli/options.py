@@ -11,9 +11,9 @@ from typing import Annotated
 import typer
 
 from svgf_cl.errors import SettingsError, SvgfError
-from svgf_cl.settings import RANGES, Settings
+from svgf_cl.settings import CHOICES, RANGES, Settings, describe_choice
 
-DEFAULTS: dict[str, bool | int | float] = vars(Settings())
+DEFAULTS: dict[str, bool | int | float | str] = vars(Settings())
 SWITCHES = {"true": True, "on": True, "1": True, "false": False, "off": False, "0": False}
 
 # A slip of the hand beyond it: of so many pixels squared, one plane of float4 takes 16 GiB.
@@ -67,20 +67,29 @@ def parse_rgb(text: str) -> tuple[float, float, float]:
 
 def parse_settings(texts: Iterable[str]) -> Settings:
     """Read ``["iterations=4", "taa=on"]`` as `Settings`; `SettingsError` for an unknown name or a wrong value."""
-    values: dict[str, bool | int | float] = {}
+    values: dict[str, bool | int | float | str] = {}
     for text in texts:
         name, _, value = text.partition("=")
         if name not in DEFAULTS:
             raise SettingsError(f"--set: expected NAME=VALUE with a name out of {', '.join(DEFAULTS)}, got {text!r}")
         try:
-            values[name] = SWITCHES[value.lower()] if name not in RANGES else type(DEFAULTS[name])(value)
+            values[name] = parse_value(name, value)
         except (KeyError, ValueError) as error:
             raise SettingsError(f"--set {name}: expected {describe(name)}, got {value!r}") from error
     return Settings(**values)  # type: ignore[arg-type]  # each value was made by its own field's type
 
 
+def parse_value(name: str, text: str) -> bool | int | float | str:
+    """Read the value of setting `name`; KeyError or ValueError where it is none. `Settings` checks its range."""
+    if name in CHOICES:
+        return text
+    return type(DEFAULTS[name])(text) if name in RANGES else SWITCHES[text.lower()]
+
+
 def describe(name: str) -> str:
     """Describe the values that setting `name` may have: ``"a whole number in 1..5"``."""
+    if name in CHOICES:
+        return describe_choice(name)
     if name not in RANGES:
         return "on or off"
     low, high = RANGES[name]

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from svgf_cl import Denoiser, Frame, Settings, SvgfError
-from svgf_cl.accuracy import DECISION, relative_error
+from svgf_cl.accuracy import DECISION, largest_channel, relative_error
 from svgf_cl.frame import CHANNELS, Shape
 from svgf_cl.passes import Inputs, pipeline
 from svgf_cl.reference import Reference
@@ -28,7 +28,7 @@ TAA = Settings(taa=True)
 
 def assert_alike(got: np.ndarray, expected: np.ndarray, otherwise: float = DECIDED_OTHERWISE) -> None:
     """Two pictures are the same but for rounding, and for a few pixels decided otherwise."""
-    error = relative_error(got, expected)
+    error = relative_error(got, expected, largest_channel(expected))
     decided_otherwise = ~(error <= DECISION)
     assert decided_otherwise.mean() <= otherwise
     assert error[~decided_otherwise].max(initial=0.0) <= PIPELINE_TOLERANCE

@@ -304,7 +304,7 @@ class TestAtrous:
         picture, var = np.ones((1, 1, 2, 3)) * np.array((1.0, 3.0))[:, None], np.array((((4.0, 1.0),),))
         color, after = atrous(picture, var, guides, 0, Settings())
         smooth = (4 / 2 + 1 / 4) / (3 / 4)
-        w_z, w_n = np.exp(-0.5 / (0.5 + 1e-3 * 2)), np.sqrt(1 - 0.01) ** 128
+        w_z, w_n = np.exp(-0.5 / (0.5 + 1e-3 * 2)), np.exp(128 * (np.sqrt(1 - 0.01) - 1))
         w_l = np.exp(-2 / (4 * np.sqrt(smooth) + 1e-3))
         centre, tap = (3 / 8) ** 2, 3 / 8 * 1 / 4 * w_z * w_n * w_l
         assert_allclose(color[0, 0, 0], (centre + 3 * tap) / (centre + tap), rtol=1e-5)

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 from svgf_cl import Settings, SettingsError
-from svgf_cl.settings import RANGES
+from svgf_cl.settings import CHOICES, RANGES
 
-WHOLE = ("iterations", "sigma_normal")
+WHOLE = ("iterations",)
 every_number = pytest.mark.parametrize("name", RANGES)
 
 
 def test_every_field_is_checked() -> None:
-    assert {field.name for field in fields(Settings)} == {*RANGES, "taa"}
+    assert {field.name for field in fields(Settings)} == {*RANGES, *CHOICES, "taa"}
 
 
 @every_number
@@ -53,10 +53,13 @@ def test_any_real_number_will_do(value: Any) -> None:
     assert Settings(alpha_color=value).alpha_color == value
 
 
-@pytest.mark.parametrize("value", [3, 100, 1023])
-def test_sigma_normal_is_a_power_of_two(value: int) -> None:
-    with pytest.raises(SettingsError, match="power of two"):
-        Settings(sigma_normal=value)
+@pytest.mark.parametrize("name", CHOICES)
+def test_only_known_words_are_taken(name: str) -> None:
+    for choice in CHOICES[name]:
+        assert getattr(Settings(**{name: choice}), name) == choice
+    for value in ("", "no such word", None, 1, True):
+        with pytest.raises(SettingsError, match=rf"Settings\.{name}: expected '.*' or '.*', got"):
+            Settings(**{name: value})
 
 
 @pytest.mark.parametrize("value", [None, 0, 1, "yes"])
@@ -70,7 +73,6 @@ def test_is_frozen() -> None:
         Settings().taa = True  # type: ignore[misc]
 
 
-def test_only_taa_and_sigma_normal_compile_anew() -> None:
-    changed = {name: RANGES[name][1] for name in RANGES if name != "sigma_normal"}
-    assert Settings(**changed).defines == Settings().defines
-    assert Settings(taa=True, sigma_normal=1024).defines == {"TAA": 1, "LOG2_SIGMA_NORMAL": 10}
+def test_no_number_compiles_anew() -> None:
+    assert Settings(**{name: RANGES[name][1] for name in RANGES}).defines == Settings().defines
+    assert Settings(taa=True, precision="fast").defines == {"TAA": 1, "FAST": 1}
