@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl import Settings, SettingsError, __version__, devices, tuner, tuning
+from svgf_cl import Settings, __version__, devices, tuner, tuning
 from svgf_cl.cli import main
 from svgf_cl.cli.options import parse_settings, settings_help
 from svgf_cl.sequence import (
