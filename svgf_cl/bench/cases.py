@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import pyopencl as cl
 
+from svgf_cl.bench.cores import core_counts
 from svgf_cl.bench.cost import Cost, cost
 from svgf_cl.frame import Shape
 from svgf_cl.passes import Inputs, Pass, pipeline
@@ -37,7 +38,7 @@ class Case:
     settings : Settings
     signals : int, 1 or 2
     cores : int, optional
-        Compute units to use, by OpenCL's device fission; all of the device where None.
+        The machine's cores to use; all where None.
     variant : str
         What is unusual about it, for its names; only its whole frame is timed. Empty for the usual, timed by pass.
     """
@@ -89,14 +90,5 @@ def cases(device: cl.Device, shapes: Sequence[Shape], settings: Settings) -> Ite
         yield Case(USUAL_SHAPE, replace(settings, iterations=iterations), variant=f"iterations{iterations}")
     for signals in (1, 2):
         yield Case(USUAL_SHAPE, settings, signals, variant=f"signals{signals}")
-    for cores in core_counts(device):
+    for cores in core_counts() if device.type & cl.device_type.CPU else ():
         yield Case(USUAL_SHAPE, settings, cores=cores, variant=f"cores{cores}")
-
-
-def core_counts(device: cl.Device) -> list[int]:
-    """1, 2, 4 and so on up to all compute units; none where the driver cannot divide the device."""
-    divisions: Sequence[int] = device.partition_properties  # type: ignore[assignment]  # its stub tells of one
-    if cl.device_partition_property.BY_COUNTS not in divisions:
-        return []
-    units = device.max_compute_units
-    return [*(2**power for power in range(units.bit_length()) if 2**power < units), units]

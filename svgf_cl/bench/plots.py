@@ -123,14 +123,14 @@ def draw_iterations(axes: Axes, lines: Sequence[Series]) -> None:
 
 
 def draw_cores(axes: Axes, lines: Sequence[Series]) -> None:
-    """Speed over compute units, against the ideal."""
+    """Speed over cores, against the ideal."""
     axes.set_prop_cycle(color=COLORS)
     most = max(line.over[-1] for line in lines)
     axes.plot([1, most], [1, most], ":", color=COLORS[-1], label="ideal")
     for line in lines:
         axes.plot(line.over, line.seconds[0] / np.array(line.seconds), "o-", label=line.device.platform)
     axes.set_xticks(sorted({count for line in lines for count in line.over}))
-    axes.set_xlabel("compute units")
+    axes.set_xlabel("cores")
     axes.set_ylabel("times faster than one")
     axes.legend(fontsize="small", frameon=False)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import nullcontext
 from functools import cache
 from typing import Any
 
@@ -12,6 +13,7 @@ import pyopencl as cl
 from svgf_cl import devices
 from svgf_cl.bench.cases import STARTS, USUAL_SHAPE, Case
 from svgf_cl.bench.ceilings import CeilingBench, Ceilings
+from svgf_cl.bench.cores import confined
 from svgf_cl.bench.error import error_to_oracle
 from svgf_cl.bench.results import DeviceRecord, Result
 from svgf_cl.bench.rig import EVENT, HOST, Rig, there_and_back
@@ -52,9 +54,8 @@ class Station:
     def set_up(self, case: Case) -> None:
         """Make a denoiser ready, or note why that is impossible."""
         try:
-            queue = self._queue if case.cores is None else devices.create_queue(part(self._queue.device, case.cores))
             frames = room(case.shape, case.signals)
-            self._rigs[case] = Rig(frames, case.settings, queue, passes=not case.variant)
+            self._rigs[case] = Rig(frames, case.settings, self._queue, passes=not case.variant)
         except (SvgfError, MemoryError, cl.Error) as error:  # as it may be that the device has no room
             self.left_out.append(f"{case.name('frame')} on {self.report}: {error}")
 
@@ -66,7 +67,8 @@ class Station:
     def sample(self, case: Case, seconds: float) -> None:
         """Time a case for about so long, if it could be set up."""
         if case in self._rigs:
-            self._rigs[case].sample(seconds)
+            with confined(case.cores) if case.cores else nullcontext():
+                self._rigs[case].sample(seconds)
 
     def sample_ceilings(self) -> None:
         """Take a few samples of each."""
@@ -127,7 +129,7 @@ class Station:
 
 def bound_facts(case: Case, ceilings: Ceilings) -> dict[str, dict[str, Any]]:
     """Per stage: bytes, operations, the least seconds and what binds; of several passes the sums."""
-    if case.cores is not None:  # the ceilings are those of the whole device
+    if case.cores is not None:  # the ceilings are those of all
         return {}
     costs = case.costs()
     bounds = {name: Bound.of(each, ceilings) for name, each in costs.items()}
@@ -150,10 +152,3 @@ def bound_facts(case: Case, ceilings: Ceilings) -> dict[str, dict[str, Any]]:
 def room(shape: Shape, signals: int) -> tuple[Frame, Frame]:
     """The frames that all devices share."""
     return there_and_back(shape, signals)
-
-
-def part(device: cl.Device, cores: int) -> cl.Device:
-    """A device of so many compute units of another."""
-    how = cl.device_partition_property
-    (division,) = device.create_sub_devices([how.BY_COUNTS, cores, how.BY_COUNTS_LIST_END])  # type: ignore[list-item]
-    return division

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pyopencl as cl
 
 from svgf_cl import Settings
-from svgf_cl.bench.cases import SHAPES, USUAL_SHAPE, Case, cases, core_counts
+from svgf_cl.bench.cases import SHAPES, USUAL_SHAPE, Case, cases
 
 
 def test_names() -> None:
@@ -25,20 +25,6 @@ def test_only_one_thing_varies_at_a_time(queue: cl.CommandQueue) -> None:
         assert case.shape == USUAL_SHAPE
         assert sum(unusual) <= 1
         assert case.stages == ["frame"]
-
-
-class Divisible:
-    """A device of six compute units."""
-
-    max_compute_units = 6
-
-    def __init__(self, *ways: int) -> None:
-        self.partition_properties = list(ways)
-
-
-def test_cores_double_up_to_all() -> None:
-    assert core_counts(Divisible(cl.device_partition_property.BY_COUNTS)) == [1, 2, 4, 6]
-    assert core_counts(Divisible(0)) == []
 
 
 def test_costs_are_those_of_the_whole_image() -> None:

@@ -77,13 +77,6 @@ def test_what_has_no_room_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     assert line.endswith("no room for a buffer of 8 MiB")
 
 
-def test_a_part_of_a_device(queue: cl.CommandQueue) -> None:
-    how = cl.device_partition_property.BY_COUNTS
-    if how not in queue.device.partition_properties:
-        pytest.skip("this driver cannot divide its device")
-    assert station.part(queue.device, 1).max_compute_units == 1
-
-
 def test_a_named_device_is_the_only_one(monkeypatch: pytest.MonkeyPatch) -> None:
     default = devices.choose(devices.list_devices())
     monkeypatch.setenv(devices.VARIABLE, default.selector)
