@@ -8,7 +8,6 @@ to several taps counts once. In a steady state: what a pass does only where hist
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -30,8 +29,8 @@ CHANNELS = {
     "out": 3,
 }
 
-DOT = 5  # x x' + y y' + z z'; luminance too
-EXP = 15  # exp(-x) to float32's precision: range reduction 5, polynomial of degree 5 with 2 a degree
+DOT = 5  # x x' + y y' + z z'; a luminance too
+EXP = {"precise": 14, "fast": 2}  # polynomial of degree 4, 2 a degree, and 6 to reduce the range; or a conversion
 BLEND = 3  # a + t (b - a)
 DISTANCE = 3  # |a - b| scale
 GRADIENT = 10  # per axis two differences, two magnitudes, a choice
@@ -80,11 +79,11 @@ def planes_used(entry: Pass, buffer: str, inputs: Inputs) -> int:
 
 
 def demodulate(inputs: Inputs, settings: Settings) -> float:
-    """Section 1: a unit normal, then radiance made safe, divided by albedo and clamped."""
+    """Section 1: a unit normal, then radiance made safe, divided by albedo and clamped, and its luminance."""
     normal = DOT + 2 + 3 + SAFE
     albedo = 3 * (SAFE + 1) if inputs.albedo else 0
     emission = 3 * (SAFE + 2) if inputs.emission and inputs.signals == 1 else 0
-    return normal + albedo + emission + inputs.signals * 3 * (SAFE + 1 + 2)
+    return normal + albedo + emission + inputs.signals * (3 * (SAFE + 1 + 2) + DOT)
 
 
 def temporal(inputs: Inputs, settings: Settings) -> float:
@@ -93,7 +92,7 @@ def temporal(inputs: Inputs, settings: Settings) -> float:
     consistent = DOT + 1 + (4 + 2 + 1) + 1 + (1 if inputs.id else 0)  # normal; depth along the surface; hit; id
     weight = 3 + 1
     tap = consistent + weight + 2 * (1 + 3 * inputs.signals) + inputs.signals * (2 + 3 + 2)  # N, c; M; V + (M - M_h)^2
-    blend = inputs.signals * (3 * BLEND + DOT + BLEND + 1 + 4)  # c; l(c); M; 1 - a; V
+    blend = inputs.signals * (3 * BLEND + BLEND + 1 + 4)  # c; M; 1 - a; V
     return footprint + 4 * tap + 4 + blend  # N, 1 / N, the two shares
 
 
@@ -103,21 +102,26 @@ def variance(inputs: Inputs, settings: Settings) -> float:
 
 
 def atrous(inputs: Inputs, settings: Settings) -> float:
-    """Section 4: one level of 5x5 taps; those at +d and -d have the tolerance of depth in common."""
-    tolerance = 3 + 1 + 2 + 1 + 1  # |g . d|; times sigma; plus the floor times z; not 0; reciprocal
-    surface = DOT + 1 + math.log2(settings.sigma_normal) + DISTANCE + 1  # w_n; exponent of w_z; h
-    light = DOT + DISTANCE + 1 + EXP + 1  # exponent of w_l; both exponents; w
+    """Section 4: one level of 5x5 taps; those at +d and -d have the tolerance of depth in common.
+
+    The three terms and the spline add up to one exponent; its factors are those of the pixel, not of the tap.
+    """
+    surface = GRADIENT + 3 + 2 + 1  # normal, slope and floor times their sigmas
+    tolerance = 4 + 2 + 1  # |g . d|; plus the floor; reciprocal
+    exponent = DISTANCE + 1 + 2 * 3  # of w_z and h; of w_n
+    light = DISTANCE + 1 + EXP[settings.precision]  # of w_l; w
     sums = 2 * 3 + 1 + 2 + 1  # w c; w^2 Var; w
-    smooth = 9 * (2 + 1 + 1) + 1 + 1 + DOT + 4  # 3x3 Gaussian over hits; root; the scale of w_l
+    smooth = 9 * (2 + 1 + 1) + 1 + 1 + 4 + 1  # 3x3 Gaussian over hits; root; the scale of w_l
     normalise = 1 + 3 + 2
-    return GRADIENT + 12 * tolerance + 24 * surface + inputs.signals * (24 * (light + sums) + smooth + normalise)
+    return surface + 12 * tolerance + 24 * exponent + inputs.signals * (24 * (light + sums) + smooth + normalise)
 
 
 def modulate(inputs: Inputs, settings: Settings) -> float:
-    """Section 5: times albedo, plus emission."""
+    """Section 5: green from luminance, times albedo, plus emission."""
+    green = 2 * 2 + 1 + 1
     albedo = SAFE + 2 if inputs.albedo else 0
     emission = SAFE + 2 if inputs.emission else 0
-    return 3 * (inputs.signals - 1 + albedo + emission + 1)
+    return green + 3 * (inputs.signals - 1 + albedo + emission + 1)
 
 
 def taa(inputs: Inputs, settings: Settings) -> float:
