@@ -21,7 +21,7 @@ class Table:
 def milliseconds(seconds: float) -> str:
     """Three significant digits or so of a time in s, as ms."""
     ms = 1e3 * seconds
-    return f"{ms:.3f}" if ms < 1 else f"{ms:.2f}" if ms < 100 else f"{ms:.0f}"
+    return f"{ms:.3g}" if ms < 1 else f"{ms:.2f}" if ms < 100 else f"{ms:.0f}"
 
 
 def device_table(run: Run) -> Table:

@@ -8,7 +8,9 @@ from svgf_cl.bench.tables import device_table, memory_table, milliseconds, stage
 from tests.svgf_cl.bench.runs import whole_run
 
 
-@pytest.mark.parametrize(("seconds", "text"), [(1.2345e-4, "0.123"), (0.0123, "12.30"), (1.5, "1500")])
+@pytest.mark.parametrize(
+    ("seconds", "text"), [(1.2345e-7, "0.000123"), (1.2345e-4, "0.123"), (0.0123, "12.30"), (1.5, "1500")]
+)
 def test_milliseconds(seconds: float, text: str) -> None:
     assert milliseconds(seconds) == text
 
