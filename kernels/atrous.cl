@@ -1,4 +1,4 @@
-// One level of the edge-avoiding a-trous wavelet filter; level i has step 2^i between its 5x5 taps.
+// One level of the edge-avoiding a-trous wavelet filter; level i has step 2^i between its taps, 5x5 or 3x3 of them.
 //
 //   c = sum h w c / sum h w,   Var = sum h^2 w^2 Var / (sum h w)^2,   w = w_z w_n w_l
 //   w_z = exp(-|z - z'| / (step (sigma_depth |grad z . d| + slope_floor z |d|)))     w_n = exp(sigma_normal (n.n' - 1))
@@ -9,10 +9,15 @@
 // Schied et al. 2017, section 4.3 and 4.4; Dammertz et al. 2010. The three terms and h share one exponential; offsets come
 // in pairs +d and -d that share the scale of w_z.
 
-// 5 coefficients of the B3 spline, from the middle: 3/8, 1/4, 1/16. As exponents; 3/8 = 1.5 / 4 lies on a straight line of
-// the fast weight.
+// Coefficients of the spline from the middle, as exponents: B3 has 3/8, 1/4, 1/16, of which 3/8 = 1.5 / 4 lies on a straight
+// line of the fast weight; the linear one has 1/2, 1/4.
+#if RADIUS == 2
 #define MIDDLE 0.375f
 INLINE float log2_spline(int d) { return d == 0 ? (FAST ? -1.5f : -1.41503750f) : d == 1 ? -2.0f : -4.0f; }
+#else
+#define MIDDLE 0.5f
+INLINE float log2_spline(int d) { return d == 0 ? -1.0f : -2.0f; }
+#endif
 
 typedef struct {
     Surface surface;
@@ -57,7 +62,7 @@ INLINE void add_tap(Sum *sum, Centre centre, floatv depth_scale, float log2_h, c
 }
 
 // Row of the image for this work-item: y, y + step, y + 2 step, ... in turn. What comes next then reads four of the five tap
-// rows again, while they are in the cache: a third less time for the wider levels.
+// rows again, while they are in the cache: a third less time for the wider levels. Dolp et al. 2024 permute pixels so.
 INLINE int interleaved_row(int height, int step) {
     const int rows = (height + step - 1) / step;
     return row() < rows * step ? row() / rows + row() % rows * step : height;
@@ -86,9 +91,9 @@ KERNEL atrous(const int4 size, const int step, const float sigma_depth, const fl
     }
 
     // Rows stay a loop: unrolled as well, this is slower on PoCL, and takes 3 s to compile in place of 0.5 s.
-    for (int dy = 0; dy <= 2; ++dy) {
+    for (int dy = 0; dy <= RADIUS; ++dy) {
 #pragma unroll
-        for (int dx = -2; dx <= 2; ++dx) {
+        for (int dx = -RADIUS; dx <= RADIUS; ++dx) {
             if (dy == 0 && dx <= 0) continue;  // the other half of each pair, and the centre
             const floatv scale = depth_scale(centre.surface, dx, dy);
             const float log2_h = log2_spline(dx < 0 ? -dx : dx) + log2_spline(dy);

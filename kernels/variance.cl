@@ -10,7 +10,7 @@
 // Frames from which the temporal estimate serves. Asking for 3.5 keeps a resampled length of 4 from failing by rounding.
 #define LONG_HISTORY 4.0f
 #define NEARLY_LONG 3.5f
-#define RADIUS 3
+#define REACH 3  // 7x7 taps
 
 typedef struct {
     floatv weight, first[SIGNALS], second[SIGNALS];  // sums of w, w (M - M(p)), w (V + (M - M(p))^2)
@@ -33,8 +33,8 @@ INLINE Moments neighbourhood(const int4 size, int here, Surface surface, const f
     Moments sum;
     sum.weight = (floatv)(0.0f);
     UNROLLED_FOR(s, SIGNALS) sum.first[s] = sum.second[s] = (floatv)(0.0f);
-    for (int dy = -RADIUS; dy <= RADIUS; ++dy) {
-        for (int dx = -RADIUS; dx <= RADIUS; ++dx) {
+    for (int dy = -REACH; dy <= REACH; ++dy) {
+        for (int dx = -REACH; dx <= REACH; ++dx) {
             const int tap = here + dy * size.z + dx;
             floatv w = weight(surface_exponent(surface, depth_scale(surface, dx, dy), 0.0f, size, tap, guide));
             if (dx == 0 && dy == 0) w = (floatv)(1.0f);

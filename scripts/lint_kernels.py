@@ -21,6 +21,7 @@ MACROS = {
     "HAS_ID": (0, 1),
     "TAA": (0, 1),
     "FAST": (0, 1),
+    "RADIUS": (1, 2),
 }
 # -Wundef: a macro that a kernel reads and this table lacks is an error, never a silent 0.
 LANGUAGE = ("-x", "cl", "-cl-std=CL1.2", "-target", "spir64", "-Xclang", "-finclude-default-header")

@@ -39,7 +39,8 @@ ILLUMINATION_MAX = 1e15
 MOTION_MAX = 1e6
 NO_HISTORY = (-MOTION_MAX, -MOTION_MAX, 0.0)
 LENGTH_MAX = 1024
-SPLINE = {-2: 1 / 16, -1: 1 / 4, 0: 3 / 8, 1: 1 / 4, 2: 1 / 16}
+# By radius: of B3, and linear.
+SPLINES = {2: {-2: 1 / 16, -1: 1 / 4, 0: 3 / 8, 1: 1 / 4, 2: 1 / 16}, 1: {-1: 1 / 4, 0: 1 / 2, 1: 1 / 4}}
 YCOCG_OF_RGB = np.array(((1 / 4, 1 / 2, 1 / 4), (1 / 2, 0, -1 / 2), (-1 / 4, 1 / 2, -1 / 4)))
 RGB_OF_YCOCG = np.array(((1, 1, -1), (1, 0, 1), (1, -1, -1)))
 
@@ -261,10 +262,11 @@ def atrous(illumination: Array, var: Array, guides: Guides, level: int, settings
     luma = luminance(illumination)
     tolerance = settings.sigma_luminance * np.sqrt(smoothed(var, guides.hit)) + 1e-3 * luma + 1e-12
     color, squares, total = np.zeros_like(illumination), np.zeros_like(var), np.zeros_like(var)
-    for dx, dy in square(2):
+    spline = SPLINES[settings.radius]
+    for dx, dy in square(settings.radius):
         y, x, _ = shifted((dx, dy), guides.depth.shape, step)
         w_l = np.exp(-np.abs(luma - luma[:, y, x]) / tolerance)
-        w = SPLINE[dx] * SPLINE[dy] * surface_weight(guides, gradient, (dx, dy), step, settings) * w_l
+        w = spline[dx] * spline[dy] * surface_weight(guides, gradient, (dx, dy), step, settings) * w_l
         color += w[..., None] * illumination[:, y, x]
         squares += w**2 * var[:, y, x]
         total += w

@@ -24,6 +24,7 @@ RANGES: dict[str, tuple[float, float]] = {
 # What each setting that is a word may be.
 CHOICES: dict[str, tuple[str, ...]] = {
     "precision": ("precise", "fast"),
+    "taps": ("5x5", "3x3"),
 }
 
 
@@ -61,6 +62,8 @@ class Settings:
     alpha_taa : float, 0..1
         Share of the new frame in the antialiased picture. 0.2: on the moving demo 0.8 dB better than the usual 0.1, for
         each resampling of the history softens it; less suits a still camera.
+    taps : "5x5" or "3x3"
+        Of an a-trous level: the cubic B-spline of the paper, or the linear one, which sees a third of the neighbours.
     precision : "precise" or "fast"
         Weights of the a-trous filter and the spatial variance: exponentials to 4e-6, or with straight lines between the
         powers of two, up to 6 % larger.
@@ -77,6 +80,7 @@ class Settings:
     normal_threshold: float = 0.9
     taa: bool = False
     alpha_taa: float = 0.2
+    taps: str = "5x5"
     precision: str = "precise"
 
     def __post_init__(self) -> None:
@@ -93,7 +97,12 @@ class Settings:
     @property
     def defines(self) -> dict[str, int]:
         """The kernels' macros; every other setting is an argument, so that tuning it compiles nothing."""
-        return {"FAST": int(self.precision == "fast"), "TAA": int(self.taa)}
+        return {"FAST": int(self.precision == "fast"), "RADIUS": self.radius, "TAA": int(self.taa)}
+
+    @property
+    def radius(self) -> int:
+        """Taps of an a-trous level to either side of the middle one."""
+        return {"5x5": 2, "3x3": 1}[self.taps]
 
 
 def describe_choice(name: str) -> str:

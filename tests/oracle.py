@@ -61,6 +61,7 @@ UNUSUAL = Settings(
     normal_threshold=0.8,
     taa=True,
     alpha_taa=0.3,
+    taps="3x3",
 )
 
 # PoCL compiles a 16-wide kernel for one signal in 8 s and any other in 1 s: the latter serve where there is a choice.

@@ -106,6 +106,7 @@ def test_a_build_error_shows_device_options_and_the_line_in_the_file(queue, stag
         "HAS_ID": 0,
         "TAA": 0,
         "FAST": 0,
+        "RADIUS": 2,
     }
     with pytest.raises(DeviceError) as error:
         programs.build(queue.context, queue.device, stage(text), macros)

@@ -75,4 +75,4 @@ def test_is_frozen() -> None:
 
 def test_no_number_compiles_anew() -> None:
     assert Settings(**{name: RANGES[name][1] for name in RANGES}).defines == Settings().defines
-    assert Settings(taa=True, precision="fast").defines == {"TAA": 1, "FAST": 1}
+    assert Settings(taa=True, precision="fast", taps="3x3").defines == {"TAA": 1, "FAST": 1, "RADIUS": 1}
