@@ -12,6 +12,7 @@ import numpy as np
 
 import tracer
 from svgf_cl.cache import cache_folder
+from svgf_cl.cli.scenes import open_scene
 from svgf_cl.display import Linear
 from svgf_cl.files import make_folder
 from svgf_cl.frame import Frame, Shape
@@ -23,7 +24,7 @@ PART = 32
 
 @dataclass(frozen=True)
 class Footage:
-    """A camera moving through a built-in scene at 1 sample per pixel, and the truth about part of its last two frames.
+    """A camera moving through a scene at 1 sample per pixel, and the truth about part of its last two frames.
 
     Two frames in a row, for the temporal error; the last, because history is longest there. Of these a band of rows, so
     that a large picture's truth can be had in minutes. Each truth is rendered as two independent halves: what they
@@ -37,7 +38,11 @@ class Footage:
         True: rays go through another point of the pixel in every frame, and the truth is the mean over the pixel's
         area. False: all rays, the truth's too, go through the pixel's centre, so that there is nothing to antialias.
     scene : str
-        Name of a built-in scene.
+        Name of a built-in scene, or a glTF, GLB or OBJ file.
+    cameras : tuple of Camera
+        Keyframes of the camera's path; none for the scene's own path.
+    sky : (float, float, float), optional
+        Light from outside, linear radiance.
     shape : (int, int)
         (height, width) in pixels.
     band : (float, float)
@@ -51,6 +56,8 @@ class Footage:
     name: str
     jitter: bool
     scene: str = "cornell"
+    cameras: tuple[tracer.Camera, ...] = ()
+    sky: tuple[float, float, float] | None = None
     shape: Shape = (720, 1280)
     band: tuple[float, float] = (0.66, 0.78)
     frames: int = 24
@@ -70,12 +77,12 @@ class Footage:
     @property
     def parts_to_render(self) -> int:
         """How often `halves` will call `advance`."""
-        missing = [path for number in self.judged for half in (0, 1) if not (path := self._path(number, half)).exists()]
+        missing = [path for number in self.judged for half in (0, 1) if not (path := self._file(number, half)).exists()]
         return len(missing) * self.spp // (2 * PART)
 
     def noisy(self) -> Iterator[Frame]:
         """The frames to denoise."""
-        return tracer.render_sequence(self._world, self._world.camera_path, self.shape, self.frames, jitter=self.jitter)
+        return tracer.render_sequence(self._world, self._path, self.shape, self.frames, jitter=self.jitter)
 
     def halves(self, advance: Callable[[], None]) -> list[tuple[Linear, Linear]]:
         """Two independent halves of the truth of each judged frame, rendered unless kept from an earlier run."""
@@ -83,24 +90,29 @@ class Footage:
 
     @property
     def folder(self) -> Path:
-        """Where the halves are kept: another one for other parameters or another tracer."""
+        """Where the halves are kept: another one for other parameters, another scene or another tracer."""
         digest = hashlib.sha256(repr(self).encode())
-        for source in sorted(Path(tracer.__file__).parent.glob("*.py")):
+        sources = [*Path(tracer.__file__).parent.glob("*.py"), *filter(Path.is_file, [Path(self.scene)])]
+        for source in sorted(sources):
             digest.update(source.read_bytes())
         return cache_folder() / "references" / digest.hexdigest()[:16]
 
     @cached_property
     def _world(self) -> tracer.Scene:
-        return tracer.builtin_scene(self.scene)
+        return open_scene(self.scene, self.sky)
 
-    def _path(self, number: int, half: int) -> Path:
+    @cached_property
+    def _path(self) -> tracer.CameraPath:
+        return tracer.CameraPath.through(self.cameras) if self.cameras else self._world.camera_path
+
+    def _file(self, number: int, half: int) -> Path:
         return self.folder / f"frame.{number:04d}.half{half}.exr"
 
     def _half(self, number: int, half: int, advance: Callable[[], None]) -> Linear:
-        path = self._path(number, half)
+        path = self._file(number, half)
         if not path.exists():
             make_folder(self.folder)
-            camera = self._world.camera_path.at_frame(number, self.frames)
+            camera = self._path.at_frame(number, self.frames)
             seeds = range(half, self.spp // PART, 2)
             total: Linear = np.zeros(())
             for seed in seeds:

@@ -6,10 +6,10 @@ Error, two kinds:
 
 - against the float64 oracle *that does the same* (levels, taps, antialiasing alike): what arithmetic and storage lose.
   Root mean square over a short sequence of the room, relative to the picture's mean.
-- against path-traced truth, in a band of rows of the last two of 24 frames of a camera moving through the built-in
-  Cornell box at 1 sample per pixel, of the size that is timed. "area": jittered rays, truth averaged over the pixel's
-  area, as a renderer is used; without TAA much of the error is aliasing of edges, which no filter of light can remove.
-  "centre": all rays through pixel centres, the truth's too: the filter's own error, without TAA, which needs jitter.
+- against path-traced truth, in a band of rows of the last two of 24 frames of a camera moving through a scene at 1
+  sample per pixel, of the size that is timed. "area": jittered rays, truth averaged over the pixel's area, as a
+  renderer is used; without TAA much of the error is aliasing of edges, which no filter of light can remove. "centre":
+  all rays through pixel centres, the truth's too: the filter's own error, without TAA, which needs jitter.
 
 How the metrics are defined: `svgf_cl.metrics`. The truth has noise of its own, given below the table.
 """
@@ -32,10 +32,12 @@ from benchmarks.provenance import provenance
 from benchmarks.variants import VARIANTS
 from svgf_cl import devices
 from svgf_cl.cli.console import progress_bar, show
-from svgf_cl.cli.options import parse_size
+from svgf_cl.cli.options import parse_rgb, parse_size
+from svgf_cl.cli.render import CAMERA_HELP, SKY_HELP
 from svgf_cl.errors import SvgfError
 from svgf_cl.files import make_folder, written_whole
 from svgf_cl.metrics import require_flip
+from tracer import Camera
 
 
 def speed_against_error(
@@ -44,6 +46,11 @@ def speed_against_error(
     ] = Path("out/speed-against-error"),
     size: Annotated[str, typer.Option(metavar="WxH", help="Size of the frames.")] = "1280x720",
     rounds: Annotated[int, typer.Option(metavar="N", min=1, help="Turns of each variant, two timed frames each.")] = 12,
+    scene: Annotated[
+        str, typer.Option(metavar="SCENE", help="A glTF, GLB or OBJ file, or the name of a built-in scene.")
+    ] = "cornell",
+    camera: Annotated[list[str], typer.Option(metavar="TEXT", help=CAMERA_HELP)] = [],  # noqa: B006  # never changed
+    sky: Annotated[str | None, typer.Option(metavar="R,G,B", help=SKY_HELP)] = None,
     spp: Annotated[
         int, typer.Option(metavar="N", min=2 * PART, help=f"Samples per pixel of the truth, a multiple of {2 * PART}.")
     ] = 512,
@@ -56,11 +63,13 @@ def speed_against_error(
     if spp % (2 * PART):
         raise typer.BadParameter(f"expected a multiple of {2 * PART}, got {spp}", param_hint="--spp")
     shape = parse_size(size)
-    footages = [replace(footage, shape=shape, spp=spp) for footage in FOOTAGE]
+    place: dict[str, Any] = {"scene": scene, "cameras": tuple(Camera.parse(text) for text in camera)}
+    place["sky"] = parse_rgb(sky) if sky else None
+    footages = [replace(footage, shape=shape, spp=spp, **place) for footage in FOOTAGE]
     folder = make_folder(output)
     with progress_bar("speed against error", steps(VARIANTS, footages, rounds)) as advance:
         results, noise = measure(VARIANTS, footages, shape, rounds, advance)
-    about = provenance(devices.default_device()) | {"size": size, "truth": f"{spp} spp"}
+    about = provenance(devices.default_device()) | {"size": size, "truth": f"{scene}, {spp} spp"}
     write(folder, results, noise, about)
     print(f"{MARK}: on the Pareto front of device time and that error")
     show("error against the oracle", *table(results, [oracle_column()]))

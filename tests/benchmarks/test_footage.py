@@ -11,6 +11,7 @@ import pytest
 
 from benchmarks import footage
 from benchmarks.footage import FOOTAGE, PART, Footage
+from tracer import Camera
 
 SMALL = Footage("small", jitter=True, shape=(30, 40), band=(0.5, 0.7), frames=3, spp=2 * PART)
 
@@ -48,11 +49,35 @@ def test_what_is_missing_is_rendered_again() -> None:
 
 
 @pytest.mark.parametrize(
-    "change", [{"jitter": False}, {"shape": (30, 41)}, {"band": (0.5, 0.8)}, {"frames": 4}, {"spp": 4 * PART}]
+    "change",
+    [
+        {"jitter": False},
+        {"scene": "other.glb"},
+        {"cameras": (Camera((0, 0, 0), (0, 0, 1)),)},
+        {"sky": (1.0, 1.0, 1.0)},
+        {"shape": (30, 41)},
+        {"band": (0.5, 0.8)},
+        {"frames": 4},
+        {"spp": 4 * PART},
+    ],
 )
 def test_other_parameters_have_another_truth(change: dict[str, Any]) -> None:
     assert replace(SMALL, **change).folder != SMALL.folder
     assert replace(SMALL).folder == SMALL.folder
+
+
+def test_another_scene_of_that_name_has_another_truth(tmp_path: Path) -> None:
+    scene = tmp_path / "scene.glb"
+    scene.write_bytes(b"one")
+    before = replace(SMALL, scene=str(scene)).folder
+    scene.write_bytes(b"two")
+    assert replace(SMALL, scene=str(scene)).folder != before
+
+
+def test_the_camera_goes_where_it_is_sent() -> None:
+    away = replace(SMALL, cameras=(Camera((0, 1, 3), (0, 1, 9)),), jitter=False)
+    assert all(np.isinf(frame.depth).all() for frame in away.noisy())
+    assert not np.any(away.halves(lambda: None))
 
 
 def test_another_tracer_has_another_truth(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
