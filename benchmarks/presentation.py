@@ -30,7 +30,7 @@ class Column:
     of : callable
         The figure of a result; NaN where it was not measured.
     spec : str
-        Its format. The front is that of the figures as printed: a difference that does not show puts nothing on it.
+        Its format. Front and plot are of the figures as printed: a difference that does not show puts nothing on it.
     plotted : bool
     """
 
@@ -44,21 +44,21 @@ class Column:
         value = self.of(result)
         return "" if math.isnan(value) else format(value, self.spec)
 
-    def cost(self, result: Result) -> float:
-        """The printed figure, turned so that less is better."""
-        value = float(self.text(result))
-        return -value if "↑" in self.title else value
+    def point(self, result: Result) -> tuple[float, float]:
+        """Time and figure, both as printed."""
+        return float(milliseconds(result.times.device)), float(self.text(result))
 
     def front(self, results: Sequence[Result]) -> list[Result]:
         """The results on the Pareto front of device time and this error, the fastest first."""
+        sign = -1 if "↑" in self.title else 1
         measured = [result for result in results if self.text(result)]
-        points = [(float(milliseconds(result.times.device)), self.cost(result)) for result in measured]
+        points = [(time, sign * figure) for time, figure in map(self.point, measured)]
         return [measured[index] for index in pareto_front(points)]
 
 
 def oracle_column() -> Column:
     """Difference from the oracle."""
-    return Column("oracle rms ↓", lambda result: result.oracle_rms, ".1e")
+    return Column("oracle rms ↓", lambda result: result.oracle_rms, ".2e")
 
 
 def quality_columns(footage: str) -> list[Column]:
@@ -71,7 +71,7 @@ def quality_columns(footage: str) -> list[Column]:
         Column(f"{footage} PSNR dB ↑", of("psnr"), ".2f"),
         Column(f"{footage} relMSE ↓", of("relmse"), ".4f", plotted=False),
         Column(f"{footage} FLIP ↓", of("flip"), ".4f"),
-        Column(f"{footage} temporal ↓", of("temporal"), ".4f"),
+        Column(f"{footage} temporal ↓", of("temporal"), ".5f"),
     ]
 
 
@@ -123,16 +123,14 @@ def plot(results: Sequence[Result], noise: dict[str, Quality], title: str, path:
 def panel(axes: Axes, column: Column, results: Sequence[Result]) -> None:
     """Draw every result by its number, the front joined by steps, the default in red."""
     front = column.front(results)
-    axes.step(
-        [result.times.device for result in front], [column.of(result) for result in front], where="post", color="grey"
-    )
+    corners = [column.point(result) for result in front]
+    axes.step([time for time, _ in corners], [figure for _, figure in corners], where="post", color="grey")
     for number, result in enumerate(results, 1):
         if not column.text(result):
             continue
-        place = result.times.device, column.of(result)
+        place = column.point(result)
         color = "tab:red" if number == 1 else "tab:blue"
-        fill = color if result in front else "white"
-        axes.plot(*place, "o", color=color, markerfacecolor=fill)
+        axes.plot(*place, "o", color=color, markerfacecolor=color if result in front else "white")
         axes.annotate(str(number), place, (5, 4), textcoords="offset points")
     axes.set_xlabel("device ms a frame")
     axes.set_ylabel(column.title)

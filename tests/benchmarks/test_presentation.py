@@ -44,9 +44,9 @@ def test_the_table_marks_the_front_and_leaves_out_what_was_not_measured() -> Non
     headings, rows = table(RESULTS, [oracle_column(), quality_columns("area")[0]])
     assert headings == ["variant", "device ms", "frame ms", "oracle rms ↓", "area PSNR dB ↑"]
     assert rows == [
-        ["1 slow and good", "50.0", "55.0", "1.5e-07 •", "31.50 •"],
-        ["2 fast and bad", "20.0", "25.0", "3.0e-04 •", "29.50 •"],
-        ["3 slow and bad", "50.0", "55.0", "3.0e-04", ""],
+        ["1 slow and good", "50.0", "55.0", "1.52e-07 •", "31.50 •"],
+        ["2 fast and bad", "20.0", "25.0", "3.00e-04 •", "29.50 •"],
+        ["3 slow and bad", "50.0", "55.0", "3.00e-04", ""],
     ]
     assert len(table(RESULTS, quality_columns("area"))[1]) == 2
     lines = presentation.markdown(headings, rows).splitlines()
