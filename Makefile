@@ -22,9 +22,9 @@ lint: $(READY)  ## check style, types and kernels (needs clang)
 	$(BIN)/mypy
 	$(BIN)/python scripts/lint_kernels.py
 
-bench: device  ## time every kernel on every device, beside the error; report in out/bench (five minutes)
+bench: device  ## time every kernel on every device, beside the error; report in out/bench (ten minutes)
 	$(BIN)/svgf-cl bench --output out/bench
-	$(BIN)/python -m benchmarks.speed_against_error
+	$(BIN)/python -m benchmarks.speed_against_error --output out/bench/speed-against-error --report out/bench
 
 docs: demo  ## make docs/accuracy.md and the picture of README again
 	$(BIN)/python benchmarks/accuracy.py

@@ -11,8 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from benchmarks.measurements import Quality, Result
+from benchmarks.measurements import Result
 from benchmarks.pareto import pareto_front
+from svgf_cl.bench.tables import Table
 from svgf_cl.files import written_whole
 
 # Beside a figure: nothing measured is both faster and better.
@@ -80,8 +81,8 @@ def milliseconds(time: float) -> str:
     return f"{time:.1f}"
 
 
-def table(results: Sequence[Result], columns: Sequence[Column]) -> tuple[list[str], list[list[str]]]:
-    """Headings and rows, one a variant that has any of the figures; those on their Pareto front are marked."""
+def table(title: str, results: Sequence[Result], columns: Sequence[Column]) -> Table:
+    """One row a variant that has any of the figures; those on their Pareto front are marked."""
     fronts = [column.front(results) for column in columns]
 
     def row(number: int, result: Result) -> list[str]:
@@ -92,18 +93,18 @@ def table(results: Sequence[Result], columns: Sequence[Column]) -> tuple[list[st
 
     headings = ["variant", "device ms", "frame ms", *(column.title for column in columns)]
     measured = [pair for pair in enumerate(results, 1) if any(column.text(pair[1]) for column in columns)]
-    return headings, [row(*pair) for pair in measured]
+    return Table(title, headings, [row(*pair) for pair in measured])
 
 
-def markdown(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A markdown table."""
-    lines = [headings, ["---"] * len(headings), *rows]
+def markdown(table: Table) -> str:
+    """A table as it may stand in docs/results.md, without its title."""
+    lines = [table.columns, ["---"] * len(table.columns), *table.rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
 
 
-def plot(results: Sequence[Result], noise: dict[str, Quality], title: str, path: Path) -> None:
+def plot(results: Sequence[Result], footages: Sequence[str], title: str, path: Path) -> None:
     """Write a PNG: a row of panels for each footage, then the oracle's panel and the names."""
-    shown = {name: [column for column in quality_columns(name) if column.plotted] for name in noise}
+    shown = {name: [column for column in quality_columns(name) if column.plotted] for name in footages}
     width = 1 + max(len(columns) for columns in shown.values())
     figure = Figure(figsize=(4 * width, 4 * len(shown)), layout="constrained")
     grid = figure.subplots(len(shown), width, squeeze=False)

@@ -16,26 +16,25 @@ How the metrics are defined: `svgf_cl.metrics`. The truth has noise of its own, 
 
 from __future__ import annotations
 
-import json
 import sys
-from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from benchmarks.findings import TITLE, Findings
 from benchmarks.footage import FOOTAGE, PART
-from benchmarks.measurements import Quality, Result, measure, steps
-from benchmarks.presentation import MARK, markdown, oracle_column, plot, quality_columns, table
+from benchmarks.measurements import measure, steps
 from benchmarks.provenance import provenance
 from benchmarks.variants import VARIANTS
 from svgf_cl import devices
+from svgf_cl.bench.results import Run
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import parse_rgb, parse_size
 from svgf_cl.cli.render import CAMERA_HELP, SKY_HELP
 from svgf_cl.errors import SvgfError
-from svgf_cl.files import make_folder, written_whole
+from svgf_cl.files import make_folder
 from svgf_cl.metrics import require_flip
 from tracer import Camera
 
@@ -44,6 +43,10 @@ def speed_against_error(
     output: Annotated[
         Path, typer.Option("-o", "--output", metavar="DIR", help="Gets results.json, table.md and plot.png.")
     ] = Path("out/speed-against-error"),
+    report: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="What 'svgf-cl bench -o' wrote: put table and plot into its report.html."),
+    ] = None,
     size: Annotated[str, typer.Option(metavar="WxH", help="Size of the frames.")] = "1280x720",
     rounds: Annotated[int, typer.Option(metavar="N", min=1, help="Turns of each variant, two timed frames each.")] = 12,
     scene: Annotated[
@@ -67,43 +70,16 @@ def speed_against_error(
     place["sky"] = parse_rgb(sky) if sky else None
     footages = [replace(footage, shape=shape, spp=spp, **place) for footage in FOOTAGE]
     folder = make_folder(output)
-    with progress_bar("speed against error", steps(VARIANTS, footages, rounds)) as advance:
-        results, noise = measure(VARIANTS, footages, shape, rounds, advance)
+    run = Run.read(report / "results.json") if report else None
     about = provenance(devices.default_device()) | {"size": size, "truth": f"{scene}, {spp} spp"}
-    write(folder, results, noise, about)
-    print(f"{MARK}: on the Pareto front of device time and that error")
-    show("error against the oracle", *table(results, [oracle_column()]))
-    for name, halves in noise.items():
-        show(f"error against the truth, {name}", *table(results, quality_columns(name)))
-        print(noise_line(name, halves))
-    print("\n".join(f"{key}: {value}" for key, value in about.items()))
-    print(f"table, plot and JSON: {folder}")
-
-
-def noise_line(name: str, halves: Quality) -> str:
-    """How far the truth's two halves are apart; the truth, their mean, is 6 dB closer to what they converge to."""
-    return (
-        f"noise of the truth, {name}: its halves differ by PSNR {halves.psnr:.1f} dB, relMSE {halves.relmse:.4f}, "
-        f"FLIP {halves.flip:.4f}, temporal {halves.temporal:.4f}"
-    )
-
-
-def write(folder: Path, results: Sequence[Result], noise: dict[str, Quality], about: dict[str, str]) -> None:
-    """Write JSON, markdown and plot."""
-    record: dict[str, Any] = {**about, "noise": {k: asdict(q) for k, q in noise.items()}}
-    record["results"] = [asdict(result) for result in results]
-    with written_whole(folder / "results.json") as aside:
-        aside.write_text(json.dumps(record, indent=1), encoding="utf-8")
-    with written_whole(folder / "table.md") as aside:
-        aside.write_text(page(results, noise, about), encoding="utf-8")
-    plot(results, noise, f"Speed against error, {about['size']}, {devices.default_device().name}", folder / "plot.png")
-
-
-def page(results: Sequence[Result], noise: dict[str, Quality], about: dict[str, str]) -> str:
-    """The one table, and what has to be known about it, in markdown."""
-    columns = [oracle_column(), *(column for name in noise for column in quality_columns(name))]
-    remarks = [*(noise_line(*pair) for pair in noise.items()), *(f"{key}: {value}" for key, value in about.items())]
-    return markdown(*table(results, columns)) + "\n" + "".join(f"- {remark}\n" for remark in remarks)
+    with progress_bar(TITLE.lower(), steps(VARIANTS, footages, rounds)) as advance:
+        findings = Findings(*measure(VARIANTS, footages, shape, rounds, advance), about)
+    findings.write(folder)
+    if run and report:
+        findings.add_to_report(run, report, (folder / "plot.png").read_bytes())
+    for part in findings.tables:
+        show(part.title, part.columns, part.rows)
+    print("\n".join([*findings.remarks, f"{folder}: results.json, table.md, plot.png"]))
 
 
 def main() -> None:

@@ -24,7 +24,6 @@ RESULTS = [
     result("fast and bad", 20, 3e-4, 29.5),
     result("slow and bad", 50.01, 3e-4, None),
 ]
-NOISE = {"area": Quality(40, 0.001, 0.02, 0.004)}
 
 
 def test_more_decibels_and_less_error_are_better() -> None:
@@ -41,21 +40,21 @@ def test_what_does_not_show_when_printed_puts_nothing_on_the_front() -> None:
 
 
 def test_the_table_marks_the_front_and_leaves_out_what_was_not_measured() -> None:
-    headings, rows = table(RESULTS, [oracle_column(), quality_columns("area")[0]])
-    assert headings == ["variant", "device ms", "frame ms", "oracle rms ↓", "area PSNR dB ↑"]
-    assert rows == [
+    found = table("title", RESULTS, [oracle_column(), quality_columns("area")[0]])
+    assert found.columns == ["variant", "device ms", "frame ms", "oracle rms ↓", "area PSNR dB ↑"]
+    assert found.rows == [
         ["1 slow and good", "50.0", "55.0", "1.52e-07 •", "31.50 •"],
         ["2 fast and bad", "20.0", "25.0", "3.00e-04 •", "29.50 •"],
         ["3 slow and bad", "50.0", "55.0", "3.00e-04", ""],
     ]
-    assert len(table(RESULTS, quality_columns("area"))[1]) == 2
-    lines = presentation.markdown(headings, rows).splitlines()
+    assert len(table("title", RESULTS, quality_columns("area")).rows) == 2
+    lines = presentation.markdown(found).splitlines()
     assert lines[1] == "| --- | --- | --- | --- | --- |"
     assert len(lines) == 5
 
 
 def test_the_plot_is_a_picture(tmp_path: Path) -> None:
-    presentation.plot(RESULTS, NOISE | {"centre": NOISE["area"]}, "title", tmp_path / "plot.png")
+    presentation.plot(RESULTS, ["area", "centre"], "title", tmp_path / "plot.png")
     with Image.open(tmp_path / "plot.png") as picture:
         assert picture.width > picture.height > 500
     assert [path.name for path in tmp_path.iterdir()] == ["plot.png"]

@@ -1,0 +1,84 @@
+"""What a run found, as tables, files and a section of the benchmark's report."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from benchmarks.measurements import Quality, Result
+from benchmarks.presentation import MARK, Column, markdown, oracle_column, plot, quality_columns, table
+from svgf_cl.bench import report
+from svgf_cl.bench.results import Run
+from svgf_cl.bench.tables import Table
+from svgf_cl.files import written_whole
+
+TITLE = "Speed against error"
+
+LEGEND = (
+    f"{MARK}: on the Pareto front: nothing else is both faster on the device and better by that error.",
+    "oracle: against float64 doing the same, relative to the picture's mean: what arithmetic and storage lose.",
+    "area: jittered rays against path-traced light averaged over each pixel; without TAA much of it is aliasing.",
+    "centre: rays through pixel centres, the truth's too: the error of the filter alone, without TAA.",
+)
+
+
+@dataclass(frozen=True)
+class Findings:
+    """A whole run.
+
+    Parameters
+    ----------
+    results : sequence of Result
+    noise : dict of str to Quality
+        Of each footage's truth, by name: one half against the other.
+    about : dict of str to str
+        What was measured, on what, when.
+    """
+
+    results: Sequence[Result]
+    noise: dict[str, Quality]
+    about: dict[str, str]
+
+    @property
+    def tables(self) -> list[Table]:
+        """One for each kind of error."""
+        truths = [self._table(f"error against the truth, {name}", quality_columns(name)) for name in self.noise]
+        return [self._table("error against the oracle", [oracle_column()]), *truths]
+
+    @property
+    def remarks(self) -> list[str]:
+        """What has to be known about the figures."""
+        facts = (f"{key}: {value}" for key, value in self.about.items())
+        return [*LEGEND, *(noise_remark(*pair) for pair in self.noise.items()), *facts]
+
+    @property
+    def page(self) -> str:
+        """Everything in one table, then the remarks, in markdown."""
+        columns = [oracle_column(), *(column for name in self.noise for column in quality_columns(name))]
+        return markdown(self._table(TITLE, columns)) + "\n" + "".join(f"- {remark}\n" for remark in self.remarks)
+
+    def write(self, folder: Path) -> None:
+        """Write ``results.json``, ``table.md`` and ``plot.png``."""
+        with written_whole(folder / "results.json") as aside:
+            aside.write_text(json.dumps(asdict(self), indent=1), encoding="utf-8")
+        with written_whole(folder / "table.md") as aside:
+            aside.write_text(self.page, encoding="utf-8")
+        plot(self.results, list(self.noise), f"{TITLE}, {self.about['size']}", folder / "plot.png")
+
+    def add_to_report(self, run: Run, folder: Path, plot: bytes) -> None:
+        """Write the report of `run` into `folder` again, with tables and the PNG `plot` in it."""
+        section = report.Section(TITLE, report.inline_png(plot, TITLE), self.tables, self.remarks)
+        report.write(run, folder, more=[section])
+
+    def _table(self, title: str, columns: Sequence[Column]) -> Table:
+        return table(title, self.results, columns)
+
+
+def noise_remark(name: str, halves: Quality) -> str:
+    """How far the truth's two halves are apart; the truth is their mean."""
+    return (
+        f"noise of the truth, {name}: its halves differ by PSNR {halves.psnr:.1f} dB, relMSE {halves.relmse:.4f}, "
+        f"FLIP {halves.flip:.4f}, temporal {halves.temporal:.5f}; their mean is 6 dB closer to what they converge to"
+    )
