@@ -37,7 +37,7 @@ class Quality:
 
 @dataclass(frozen=True)
 class Times:
-    """Median milliseconds a frame: `device` is the sum of all passes, `frame` the whole call, copies included."""
+    """Milliseconds a frame, by `paired_medians`: `device`, the sum of all passes; `frame`, the whole call with copies."""
 
     device: float
     frame: float
@@ -116,7 +116,24 @@ def interleaved_times(variants: Sequence[Variant], shape: Shape, rounds: int, ad
             runner.run(UNTIMED)
             runner.time(TIMED)
             advance()
-    return [Times(float(np.median(runner.device)), float(np.median(runner.host))) for runner in runners]
+    device, host = (paired_medians([getattr(runner, clock) for runner in runners]) for clock in ("device", "host"))
+    return [Times(*pair) for pair in zip(device, host, strict=True)]
+
+
+def paired_medians(samples: Sequence[Sequence[float]]) -> list[float]:
+    """Medians of times taken by turns, steady where the machine is not.
+
+    That of the first as it is; that of any other as the first's times the median ratio of the two in one turn, which
+    what else the machine does changes little.
+
+    Parameters
+    ----------
+    samples : (V, N) of float
+        For each variant, its times turn by turn.
+    """
+    times = np.asarray(samples)
+    medians: list[float] = (np.median(times[0]) * np.median(times / times[0], axis=1)).tolist()
+    return medians
 
 
 def qualities(

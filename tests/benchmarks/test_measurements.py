@@ -39,6 +39,13 @@ def test_everything_is_measured_and_progress_adds_up(monkeypatch: pytest.MonkeyP
     assert noise["centre"].relmse < 1
 
 
+def test_a_busy_machine_changes_no_ratio() -> None:
+    # The second takes twice the first's time; the machine is slow for half the turns, and cuts one of them short.
+    first = [10, 10, 10, 30, 30, 10, 10]
+    second = [20, 20, 20, 60, 60, 60, 20]
+    assert measurements.paired_medians([first, second]) == [10, 20]
+
+
 def test_a_variant_is_judged_by_the_rows_and_frames_that_have_a_truth() -> None:
     split, single = Variant("split", signals=2), Variant("single")
     pictures = measurements.judged_pictures([split, single], CENTRE, lambda: None)
