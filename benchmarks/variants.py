@@ -29,11 +29,17 @@ DEFAULT = Variant("default")
 
 VARIANTS = (
     DEFAULT,
+    Variant("fast", Settings(precision="fast")),
+    Variant("3x3 taps", Settings(taps="3x3")),
     Variant("4 levels", Settings(iterations=4)),
     Variant("3 levels", Settings(iterations=3)),
+    Variant("3 levels, fast", Settings(iterations=3, precision="fast")),
+    Variant("3x3, fast", Settings(taps="3x3", precision="fast")),
+    Variant("3x3, 3 levels, fast", Settings(taps="3x3", iterations=3, precision="fast")),
     Variant("two signals", signals=2),
     Variant("TAA", Settings(taa=True)),
-    Variant("TAA, 4 levels", Settings(taa=True, iterations=4)),
-    Variant("TAA, 3 levels", Settings(taa=True, iterations=3)),
+    Variant("TAA, fast", Settings(taa=True, precision="fast")),
+    Variant("TAA, 3x3, fast", Settings(taa=True, taps="3x3", precision="fast")),
+    Variant("TAA, 3 levels, fast", Settings(taa=True, iterations=3, precision="fast")),
     Variant("TAA, two signals", Settings(taa=True), signals=2),
 )
