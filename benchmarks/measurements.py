@@ -37,7 +37,7 @@ class Quality:
 
 @dataclass(frozen=True)
 class Times:
-    """Milliseconds a frame, by `paired_medians`: `device`, the sum of all passes; `frame`, the whole call with copies."""
+    """Milliseconds a frame, by `paired_medians`: `device` sums all passes, `frame` is the whole call with copies."""
 
     device: float
     frame: float

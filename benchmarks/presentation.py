@@ -111,8 +111,8 @@ def plot(results: Sequence[Result], footages: Sequence[str], title: str, path: P
     for line, columns in zip(grid, shown.values(), strict=True):
         for axes, column in zip(line, columns, strict=False):
             panel(axes, column, results)
+    grid[0, -1].set_yscale("log")  # from rounding to what "fast" and 16 bits lose
     panel(grid[0, -1], oracle_column(), results)
-    grid[0, -1].set_yscale("log")  # storage in 16 bits loses thousands of times what arithmetic does
     for axes in grid[1:, -1]:
         axes.axis("off")
     names(grid[-1, -1], results)
@@ -131,11 +131,12 @@ def panel(axes: Axes, column: Column, results: Sequence[Result]) -> None:
             continue
         place = column.point(result)
         color = "tab:red" if number == 1 else "tab:blue"
-        axes.plot(*place, "o", color=color, markerfacecolor=color if result in front else "white")
-        axes.annotate(str(number), place, (5, 4), textcoords="offset points")
+        fill, ink = (color, "white") if result in front else ("white", color)
+        axes.plot(*place, "o", markersize=13, color=color, markerfacecolor=fill)
+        axes.annotate(str(number), place, ha="center", va="center_baseline", color=ink, fontsize=8)
     axes.set_xlabel("device ms a frame")
     axes.set_ylabel(column.title)
-    axes.margins(0.12)
+    axes.margins(0.08)
     axes.grid(alpha=0.3)
 
 
