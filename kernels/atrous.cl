@@ -29,7 +29,7 @@ typedef struct {
 } Sum;
 
 // 3x3 Gaussian of the variance over hits, a miss has no variance to give.
-INLINE floatv smooth_variance(const int4 size, int here, __global const float *depth, __global const float *variance) {
+INLINE floatv smooth_variance(const int4 size, int here, __global const float *depth, __global const light_t *variance) {
     floatv sum = (floatv)(0.0f), weight = (floatv)(1e-30f);
 #pragma unroll
     for (int dy = -1; dy <= 1; ++dy) {
@@ -38,7 +38,7 @@ INLINE floatv smooth_variance(const int4 size, int here, __global const float *d
             const int tap = here + dy * size.z + dx;
             const float gauss = (dx ? 0.25f : 0.5f) * (dy ? 0.25f : 0.5f);
             const floatv w = where(load(depth + tap) > 0.0f, (floatv)(gauss), (floatv)(0.0f));
-            sum += w * load(variance + tap);
+            sum += w * load_variance(variance + tap);
             weight += w;
         }
     }
@@ -47,16 +47,16 @@ INLINE floatv smooth_variance(const int4 size, int here, __global const float *d
 
 // `log2_h`: of the tap's spline coefficient.
 INLINE void add_tap(Sum *sum, Centre centre, floatv depth_scale, float log2_h, const int4 size, int tap,
-                    __global const float *guide, __global const float *source) {
+                    __global const float *guide, __global const light_t *source) {
     const floatv e = surface_exponent(centre.surface, depth_scale, log2_h, size, tap, guide);
     UNROLLED_FOR(s, SIGNALS) {
-        __global const float *color = source + 3 * s * size.w + tap;
-        const floatv l = load(color + LUMINANCE * size.w);
+        __global const light_t *color = source + 3 * s * size.w + tap;
+        const floatv l = load_light(color + LUMINANCE * size.w);
         const floatv w = weight(e + fabs(centre.luminance[s] - l) * centre.luminance_scale[s]);
-        sum->color[s][RED] += w * load(color + RED * size.w);
+        sum->color[s][RED] += w * load_light(color + RED * size.w);
         sum->color[s][LUMINANCE] += w * l;
-        sum->color[s][BLUE] += w * load(color + BLUE * size.w);
-        sum->variance[s] += w * w * load(source + (VARIANCE + s) * size.w + tap);
+        sum->color[s][BLUE] += w * load_light(color + BLUE * size.w);
+        sum->variance[s] += w * w * load_variance(source + (VARIANCE + s) * size.w + tap);
         sum->weight[s] += w;
     }
 }
@@ -70,7 +70,7 @@ INLINE int interleaved_row(int height, int step) {
 
 KERNEL atrous(const int4 size, const int step, const float sigma_depth, const float sigma_normal,
               const float sigma_luminance, const float depth_slope_floor, __global const float *restrict guide,
-              __global const float *restrict source, __global float *restrict target) {
+              __global const light_t *restrict source, __global light_t *restrict target) {
     const int x = first_column(), y = interleaved_row(size.y, step);
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
@@ -79,14 +79,14 @@ KERNEL atrous(const int4 size, const int step, const float sigma_depth, const fl
     centre.surface = surface_at(size, here, (float)step, sigma_depth, sigma_normal, depth_slope_floor, guide);
     Sum sum;
     UNROLLED_FOR(s, SIGNALS) {
-        __global const float *variance = source + (VARIANCE + s) * size.w;
-        const floatv l = load(source + (3 * s + LUMINANCE) * size.w + here);
+        __global const light_t *variance = source + (VARIANCE + s) * size.w;
+        const floatv l = load_light(source + (3 * s + LUMINANCE) * size.w + here);
         const floatv deviation = sqrt(smooth_variance(size, here, guide + DEPTH * size.w, variance));
         centre.luminance[s] = l;
         centre.luminance_scale[s] = -NEPER / (sigma_luminance * deviation + 1e-3f * l + 1e-12f);
         const float h = MIDDLE * MIDDLE;
-        UNROLLED_FOR(k, 3) sum.color[s][k] = h * load(source + (3 * s + k) * size.w + here);
-        sum.variance[s] = h * h * load(variance + here);
+        UNROLLED_FOR(k, 3) sum.color[s][k] = h * load_light(source + (3 * s + k) * size.w + here);
+        sum.variance[s] = h * h * load_variance(variance + here);
         sum.weight[s] = (floatv)(h);
     }
 
@@ -105,7 +105,7 @@ KERNEL atrous(const int4 size, const int step, const float sigma_depth, const fl
 
     UNROLLED_FOR(s, SIGNALS) {
         const floatv scale = 1.0f / sum.weight[s];
-        UNROLLED_FOR(k, 3) store(sum.color[s][k] * scale, target + (3 * s + k) * size.w + here);
-        store(sum.variance[s] * scale * scale, target + (VARIANCE + s) * size.w + here);
+        UNROLLED_FOR(k, 3) store_light(sum.color[s][k] * scale, target + (3 * s + k) * size.w + here);
+        store_variance(sum.variance[s] * scale * scale, target + (VARIANCE + s) * size.w + here);
     }
 }

@@ -9,7 +9,6 @@
 // black surfaces: modulate multiplies by the number that demodulate divided by.
 
 #define MIN_ALBEDO 0.001f
-#define MAX_ILLUMINATION 1e15f  // its square can still be summed in float32
 #define MAX_RADIANCE 1e38f      // finite, whatever the albedo
 
 INLINE floatv known_albedo(floatv a) { return where(isfinite(a), max(a, (floatv)(MIN_ALBEDO)), (floatv)(1.0f)); }
@@ -29,10 +28,10 @@ INLINE Color known_emission(const int4 size, int x, int y, __global const float 
 }
 #endif
 
-INLINE void put_illumination(Color c, intv inside, const int4 size, __global float *planes) {
-    UNROLLED_FOR(k, 3) c.channel[k] = where(inside, clamp(c.channel[k], 0.0f, MAX_ILLUMINATION), (floatv)(0.0f));
+INLINE void put_illumination(Color c, intv inside, const int4 size, __global light_t *planes) {
+    UNROLLED_FOR(k, 3) c.channel[k] = where(inside, clamp(c.channel[k], 0.0f, MAX_LIGHT), (floatv)(0.0f));
     c.channel[LUMINANCE] = luminance(c.channel[0], c.channel[1], c.channel[2]);
-    UNROLLED_FOR(k, 3) store(c.channel[k], planes + k * size.w);
+    UNROLLED_FOR(k, 3) store_light(c.channel[k], planes + k * size.w);
 }
 
 KERNEL demodulate(const int4 size,
@@ -51,7 +50,7 @@ KERNEL demodulate(const int4 size,
 #if HAS_ID
                   __global const int *restrict id,
 #endif
-                  __global float *restrict guide, __global float *restrict illumination) {
+                  __global float *restrict guide, __global light_t *restrict illumination) {
     const int x = first_column(), y = row();
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
@@ -62,8 +61,8 @@ KERNEL demodulate(const int4 size,
     const floatv length2 = n.channel[0] * n.channel[0] + n.channel[1] * n.channel[1] + n.channel[2] * n.channel[2];
     const intv hit = inside & isfinite(z) & (z > 0.0f) & isfinite(length2) & (length2 > 1e-12f);
     const floatv to_unit = where(hit, 1.0f / sqrt(length2), (floatv)(0.0f));
-    UNROLLED_FOR(k, 3)
-        store(where(hit, n.channel[k] * to_unit, (floatv)(0.0f)), guide + (NORMAL + k) * size.w + here);
+    __global normal_t *unit = (__global normal_t *)(guide + NORMAL * size.w) + here;
+    UNROLLED_FOR(k, 3) store_normal(where(hit, n.channel[k] * to_unit, (floatv)(0.0f)), unit + k * size.w);
     store(where(hit, z, (floatv)(0.0f)), guide + DEPTH * size.w + here);
 #if HAS_ID
     store_int(load_int_pixels(size, x, y, id), (__global int *)guide + ID * size.w + here);
@@ -95,15 +94,15 @@ KERNEL modulate(const int4 size,
 #if HAS_EMISSION
                 __global const float *restrict emission,
 #endif
-                __global const float *restrict illumination, __global float *restrict out) {
+                __global const light_t *restrict illumination, __global float *restrict out) {
     const int x = first_column(), y = row();
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
     Color c;
     UNROLLED_FOR(k, 3) {
-        c.channel[k] = load(illumination + k * size.w + here);
+        c.channel[k] = load_light(illumination + k * size.w + here);
 #if SIGNALS == 2
-        c.channel[k] += load(illumination + (3 + k) * size.w + here);
+        c.channel[k] += load_light(illumination + (3 + k) * size.w + here);
 #endif
     }
     c.channel[1] = max(green(c.channel[RED], c.channel[LUMINANCE], c.channel[BLUE]), (floatv)(0.0f));

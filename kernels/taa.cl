@@ -60,7 +60,7 @@ INLINE Position foremost(const int4 size, int x, int y, __global const float *de
 }
 
 KERNEL taa(const int4 size, const float alpha_taa, __global const float *restrict motion,
-                  __global const float *restrict guide, __global const float *restrict moments,
+                  __global const float *restrict guide, __global const light_t *restrict moments,
                   __global const float *restrict color, __global const float *restrict history,
                   __global float *restrict next_history, __global float *restrict out) {
     const int x = first_column(), y = row();
@@ -69,7 +69,7 @@ KERNEL taa(const int4 size, const float alpha_taa, __global const float *restric
     const Position front = foremost(size, x, y, guide + DEPTH * size.w);
     const intv m = (front.column + front.row * size.x) * MOTION;
     const floatv mx = gather(motion, m), my = gather(motion, m + 1);
-    const floatv length = gather(moments + LENGTH * size.w, at_lanes(size, front.column, front.row));
+    const floatv length = gather_light(moments + LENGTH * size.w, at_lanes(size, front.column, front.row));
     const floatv px = to_float(x + LANES) + mx, py = to_float((intv)(y)) + my;
     const float right = (float)size.x - 0.5f, bottom = (float)size.y - 0.5f;
     const intv seen = (px >= -0.5f) & (px < right) & (py >= -0.5f) & (py < bottom);  // false for NaN

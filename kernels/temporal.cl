@@ -55,7 +55,7 @@ INLINE Expected expect(const int4 size, int x, int y, __global const float *moti
     e.depth = depth;
     e.gradient = depth_gradient(guide + DEPTH * size.w, size.z, here);
     e.tolerance = depth_threshold * e.depth + fabs(e.gradient.x) + fabs(e.gradient.y);
-    UNROLLED_FOR(k, 3) e.normal[k] = load(guide + (NORMAL + k) * size.w + here);
+    UNROLLED_FOR(k, 3) e.normal[k] = load_normal(normals(size, guide) + k * size.w + here);
 #if HAS_ID
     e.id = load_int((__global const int *)guide + ID * size.w + here);
 #endif
@@ -67,19 +67,19 @@ INLINE Places around(const int4 size, intv x, intv y) {
     return places(at_lanes(size, clamp(x, -2, size.x + 1), clamp(y, -2, size.y + 1)));
 }
 
-INLINE Past read_past(const int4 size, Places at, __global const float *guide, __global const float *history,
-                      __global const float *moments) {
+INLINE Past read_past(const int4 size, Places at, __global const float *guide, __global const light_t *history,
+                      __global const light_t *moments) {
     Past p;
     p.depth = fetch(guide + DEPTH * size.w, at);
-    UNROLLED_FOR(k, 3) p.normal[k] = fetch(guide + (NORMAL + k) * size.w, at);
+    UNROLLED_FOR(k, 3) p.normal[k] = fetch_normal(normals(size, guide) + k * size.w, at);
 #if HAS_ID
     p.id = fetch_int((__global const int *)guide + ID * size.w, at);
 #endif
-    p.length = fetch(moments + LENGTH * size.w, at);
+    p.length = fetch_light(moments + LENGTH * size.w, at);
     UNROLLED_FOR(s, SIGNALS) {
-        UNROLLED_FOR(k, 3) p.color[s][k] = fetch(history + (3 * s + k) * size.w, at);
-        p.mean[s] = fetch(moments + (MOMENTS + 2 * s) * size.w, at);
-        p.variance[s] = fetch(moments + (MOMENTS + 2 * s + 1) * size.w, at);
+        UNROLLED_FOR(k, 3) p.color[s][k] = fetch_light(history + (3 * s + k) * size.w, at);
+        p.mean[s] = fetch_light(moments + (MOMENTS + 2 * s) * size.w, at);
+        p.variance[s] = fetch_variance(moments + (MOMENTS + 2 * s + 1) * size.w, at);
     }
     return p;
 }
@@ -89,7 +89,7 @@ INLINE intv consistent(Expected e, Past tap, floatv dx, floatv dy, float normal_
     const floatv expected = e.depth + e.gradient.x * dx + e.gradient.y * dy;
     floatv cosine = (floatv)(0.0f);
     UNROLLED_FOR(k, 3) cosine += e.normal[k] * tap.normal[k];
-    intv same = (tap.depth > 0.0f) & (fabs(tap.depth - expected) <= e.tolerance) & (cosine >= normal_threshold);
+    intv same = (tap.depth > 0.0f) & (fabs(tap.depth - expected) <= e.tolerance) & (cosine >= normal_threshold * (UNIT * UNIT));
 #if HAS_ID
     same &= tap.id == e.id;
 #endif
@@ -132,10 +132,10 @@ INLINE History select_history(intv mask, History yes, History no) {
 
 KERNEL temporal(const int4 size, const float alpha_color, const float alpha_moments, const float depth_threshold,
                 const float normal_threshold, __global const float *restrict motion,
-                __global const float *restrict guide, __global const float *restrict illumination,
-                __global const float *restrict previous_guide, __global const float *restrict history,
-                __global const float *restrict previous_moments, __global float *restrict accumulated,
-                __global float *restrict moments) {
+                __global const float *restrict guide, __global const light_t *restrict illumination,
+                __global const float *restrict previous_guide, __global const light_t *restrict history,
+                __global const light_t *restrict previous_moments, __global light_t *restrict accumulated,
+                __global light_t *restrict moments) {
     const int x = first_column(), y = row();
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
@@ -171,19 +171,19 @@ KERNEL temporal(const int4 size, const float alpha_color, const float alpha_mome
     const floatv length = where(known, min(h.length + 1.0f, (floatv)(MAX_LENGTH)), where(hit, (floatv)(1.0f), (floatv)(0.0f)));
     const floatv newest = 1.0f / max(length, (floatv)(1.0f));
     const floatv a_color = max(newest, (floatv)(alpha_color)), a_moments = max(newest, (floatv)(alpha_moments));
-    store(length, moments + LENGTH * size.w + here);
+    store_light(length, moments + LENGTH * size.w + here);
     UNROLLED_FOR(s, SIGNALS) {
         floatv c[3];
         UNROLLED_FOR(k, 3) {
             const int plane = (3 * s + k) * size.w;
-            c[k] = load(illumination + plane + here);
+            c[k] = load_light(illumination + plane + here);
             const floatv blended = h.color[s][k] + a_color * (c[k] - h.color[s][k]);
-            store(where(known, blended, c[k]), accumulated + plane + here);
+            store_light(where(known, blended, c[k]), accumulated + plane + here);
         }
         const floatv l = c[LUMINANCE], d = l - h.mean[s];
         const floatv mean = where(known, h.mean[s] + a_moments * d, l);
         const floatv variance = where(known, (1.0f - a_moments) * (h.variance[s] + a_moments * d * d), (floatv)(0.0f));
-        store(mean, moments + (MOMENTS + 2 * s) * size.w + here);
-        store(variance, moments + (MOMENTS + 2 * s + 1) * size.w + here);
+        store_light(mean, moments + (MOMENTS + 2 * s) * size.w + here);
+        store_variance(variance, moments + (MOMENTS + 2 * s + 1) * size.w + here);
     }
 }

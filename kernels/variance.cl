@@ -16,20 +16,20 @@ typedef struct {
     floatv weight, first[SIGNALS], second[SIGNALS];  // sums of w, w (M - M(p)), w (V + (M - M(p))^2)
 } Moments;
 
-INLINE void add_tap(Moments *sum, floatv w, const int4 size, int tap, const floatv *centre, __global const float *moments) {
+INLINE void add_tap(Moments *sum, floatv w, const int4 size, int tap, const floatv *centre, __global const light_t *moments) {
     sum->weight += w;
     UNROLLED_FOR(s, SIGNALS) {
-        __global const float *mean = moments + (MOMENTS + 2 * s) * size.w;
-        const floatv off = load(mean + tap) - centre[s];
+        __global const light_t *mean = moments + (MOMENTS + 2 * s) * size.w;
+        const floatv off = load_light(mean + tap) - centre[s];
         sum->first[s] += w * off;
-        sum->second[s] += w * (load(mean + size.w + tap) + off * off);
+        sum->second[s] += w * (load_variance(mean + size.w + tap) + off * off);
     }
 }
 
 // Sums over the neighbourhood. They are taken about the centre's own mean: the centre is one of the samples, so the
 // variance is never small against the shift and the difference does not cancel.
 INLINE Moments neighbourhood(const int4 size, int here, Surface surface, const floatv *centre,
-                             __global const float *guide, __global const float *moments) {
+                             __global const float *guide, __global const light_t *moments) {
     Moments sum;
     sum.weight = (floatv)(0.0f);
     UNROLLED_FOR(s, SIGNALS) sum.first[s] = sum.second[s] = (floatv)(0.0f);
@@ -46,16 +46,16 @@ INLINE Moments neighbourhood(const int4 size, int here, Surface surface, const f
 
 KERNEL variance(const int4 size, const float sigma_depth, const float sigma_normal,
                 const float depth_slope_floor, __global const float *restrict guide,
-                __global const float *restrict moments, __global float *restrict illumination) {
+                __global const light_t *restrict moments, __global light_t *restrict illumination) {
     const int x = first_column(), y = row();
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
-    const floatv length = load(moments + LENGTH * size.w + here);
+    const floatv length = load_light(moments + LENGTH * size.w + here);
     const intv brief = (length > 0.0f) & (length < NEARLY_LONG);
     floatv centre[SIGNALS], result[SIGNALS];
     UNROLLED_FOR(s, SIGNALS) {
-        centre[s] = load(moments + (MOMENTS + 2 * s) * size.w + here);
-        result[s] = load(moments + (MOMENTS + 2 * s + 1) * size.w + here);
+        centre[s] = load_light(moments + (MOMENTS + 2 * s) * size.w + here);
+        result[s] = load_variance(moments + (MOMENTS + 2 * s + 1) * size.w + here);
     }
     if (any_lane(brief)) {
         const Surface surface = surface_at(size, here, 1.0f, sigma_depth, sigma_normal, depth_slope_floor, guide);
@@ -68,5 +68,5 @@ KERNEL variance(const int4 size, const float sigma_depth, const float sigma_norm
         }
     }
     UNROLLED_FOR(s, SIGNALS)
-        store(where(length > 0.0f, result[s], (floatv)(0.0f)), illumination + (VARIANCE + s) * size.w + here);
+        store_variance(where(length > 0.0f, result[s], (floatv)(0.0f)), illumination + (VARIANCE + s) * size.w + here);
 }

@@ -20,20 +20,25 @@ MACROS = {
     "HAS_EMISSION": (0, 1),
     "HAS_ID": (0, 1),
     "TAA": (0, 1),
-    "FAST": (0, 1),
-    "RADIUS": (1, 2),
 }
+# These say how something is done, not what there is: one value against another, and all at once, will do.
+VARIANTS = (
+    {"FAST": 0, "RADIUS": 2, "HALF_GUIDES": 0, "HALF_HISTORY": 0},
+    {"FAST": 1, "RADIUS": 2, "HALF_GUIDES": 0, "HALF_HISTORY": 1},
+    {"FAST": 0, "RADIUS": 1, "HALF_GUIDES": 1, "HALF_HISTORY": 0},
+    {"FAST": 1, "RADIUS": 1, "HALF_GUIDES": 1, "HALF_HISTORY": 1},
+)
 # -Wundef: a macro that a kernel reads and this table lacks is an error, never a silent 0.
 LANGUAGE = ("-x", "cl", "-cl-std=CL1.2", "-target", "spir64", "-Xclang", "-finclude-default-header")
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wundef", "-Werror")
 
 
 def combinations(source: str) -> Iterator[dict[str, int]]:
-    """All values of the macros that a source reads, comments aside; a macro it does not read cannot change it."""
+    """Every variant with all values of the macros that a source reads, comments aside; others cannot change it."""
     code = re.sub(r"//.*", "", source)
     names = [name for name in MACROS if re.search(rf"\b{name}\b", code)]
-    for values in itertools.product(*(MACROS[name] for name in names)):
-        yield dict(zip(names, values, strict=True))
+    for variant, values in itertools.product(VARIANTS, itertools.product(*(MACROS[name] for name in names))):
+        yield dict(zip(names, values, strict=True)) | variant
 
 
 def check(stage: str, macros: dict[str, int]) -> str:

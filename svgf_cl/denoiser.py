@@ -181,7 +181,7 @@ class Denoiser:
         view = self._plan.views[name]
         if not self._plan.planes.survives(view.buffer):
             raise SvgfError(f"stage: {name!r} was overwritten by a later pass; use Denoiser(..., keep_stages=True)")
-        return view.of(self._layout.crop(self._plan.planes.read(view.buffer)))
+        return view.of(self._layout.crop(self._plan.planes.read(view.buffer).view(view.dtype)))
 
     @property
     def nbytes(self) -> int:
@@ -194,7 +194,7 @@ class Denoiser:
             passes = pipeline(inputs, self.settings)
             launches = tuple(self._launch(entry, inputs) for entry in passes)
             planes = Buffers(self.queue, self._layout, passes, inputs, share=not self._keep_stages)
-            self._plan = Plan(inputs, launches, planes, stage_views(passes, inputs, self.settings.iterations))
+            self._plan = Plan(inputs, launches, planes, stage_views(passes, inputs, self.settings))
         if inputs != self._plan.inputs:
             raise FrameError("fields", f"{self._plan.inputs} as before, or a call of reset", str(inputs))
         return self._plan

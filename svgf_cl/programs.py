@@ -21,7 +21,7 @@ import pyopencl as cl
 
 from svgf_cl.errors import DeviceError
 
-HEADERS = ("common.clh", "interleaved.clh", "surface.clh")
+HEADERS = ("common.clh", "storage.clh", "interleaved.clh", "surface.clh")
 
 # No fast-math: it would allow the compiler to drop the guards against NaN and infinity. Weights too small to count are
 # denormal numbers, and slow: without them an a-trous level takes a seventh less time on traced frames.

@@ -67,6 +67,11 @@ class Settings:
     precision : "precise" or "fast"
         Weights of the a-trous filter and the spatial variance: exponentials to 4e-6, or with straight lines between the
         powers of two, up to 6 % larger.
+    half_guides : bool
+        Keep normals as 16-bit whole numbers: 3 of 8 bytes less guide memory, an error of 2^-16.
+    half_history : bool
+        Keep illumination, its history and its moments as 16-bit floats: half the memory, an error of 2^-12, and no
+        illumination above 65504.
     """
 
     iterations: int = 5
@@ -82,6 +87,8 @@ class Settings:
     alpha_taa: float = 0.2
     taps: str = "5x5"
     precision: str = "precise"
+    half_guides: bool = False
+    half_history: bool = False
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -97,7 +104,10 @@ class Settings:
     @property
     def defines(self) -> dict[str, int]:
         """The kernels' macros; every other setting is an argument, so that tuning it compiles nothing."""
-        return {"FAST": int(self.precision == "fast"), "RADIUS": self.radius, "TAA": int(self.taa)}
+        return {"FAST": int(self.precision == "fast"), "RADIUS": self.radius, "TAA": int(self.taa)} | {
+            "HALF_GUIDES": int(self.half_guides),
+            "HALF_HISTORY": int(self.half_history),
+        }
 
     @property
     def radius(self) -> int:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from svgf_cl.passes import Inputs, Pass, level_buffer
+from svgf_cl.settings import Settings
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # Rec. 709, of red, green and blue
 
@@ -25,9 +26,12 @@ class StageView:
         Length of the result's leading axis; 0 for a quantity that all signals share.
     channels : int
         3 for a colour or a vector, 1 for a number a pixel.
-    step : int
+    dtype : type
+        Of the planes, and the unit that `first` counts in; whole numbers stand for -1..1.
     illumination : bool
         Whether the planes are red, luminance and blue, as kernels keep light, and stand for red, green and blue.
+    root : bool
+        Whether the planes hold the square root of what they stand for, as kernels keep a variance in 16 bits.
     """
 
     buffer: str
@@ -35,14 +39,20 @@ class StageView:
     signals: int
     channels: int
     step: int = 1
+    dtype: type[np.floating | np.integer] = np.float32
     illumination: bool = False
+    root: bool = False
 
     def of(self, planes: np.ndarray) -> np.ndarray:
-        """(n, H, W) planes of the buffer -> ([signals,] H, W[, channels]), a copy."""
+        """(n, H, W) planes of the buffer -> ([signals,] H, W[, channels]) float32, a copy."""
         count = max(self.signals, 1) * self.channels
         chosen = planes[self.first :: self.step][:count]
         stack = chosen.reshape(max(self.signals, 1), self.channels, *planes.shape[1:])
-        images = np.array(np.moveaxis(stack, 1, -1), order="C")
+        images = np.array(np.moveaxis(stack, 1, -1), np.float32, order="C")
+        if np.issubdtype(self.dtype, np.integer):
+            images /= np.iinfo(self.dtype).max
+        if self.root:
+            images *= images
         if self.illumination:
             images[..., 1] = (images[..., 1] - images[..., ::2] @ LUMINANCE[::2]) / LUMINANCE[1]
         if self.channels == 1:
@@ -50,22 +60,33 @@ class StageView:
         return images if self.signals else images[0]
 
 
-def stage_views(passes: tuple[Pass, ...], inputs: Inputs, iterations: int) -> dict[str, StageView]:
+def stage_views(passes: tuple[Pass, ...], inputs: Inputs, settings: Settings) -> dict[str, StageView]:
     """Every stage of a pass table, by name, in the order of the pipeline."""
     signals = inputs.signals
+    half = settings.half_history
+    stored: type[np.floating] = np.float16 if half else np.float32
+
+    def light(buffer: str) -> StageView:
+        return StageView(buffer, 0, signals, 3, dtype=stored, illumination=True)
+
+    def variance(buffer: str, first: int, step: int = 1) -> StageView:
+        return StageView(buffer, first, signals, 1, step, stored, root=half)
+
+    shared = 1 + inputs.id  # 32-bit planes in front of the guide's normals
+    unit = StageView("guide", 2 * shared, 0, 3, dtype=np.int16) if settings.half_guides else None
     views = {
-        "normal": StageView("guide", 0, 0, 3),
-        "depth": StageView("guide", 3, 0, 1),
-        "demodulated": StageView("demodulated", 0, signals, 3, illumination=True),
-        "accumulated": StageView("accumulated", 0, signals, 3, illumination=True),
-        "history_length": StageView("moments", 0, 0, 1),
-        "mean": StageView("moments", 1, signals, 1, step=2),
-        "moment_variance": StageView("moments", 2, signals, 1, step=2),
-        "variance": StageView("accumulated", 3 * signals, signals, 1),
+        "normal": unit or StageView("guide", shared, 0, 3),
+        "depth": StageView("guide", 0, 0, 1),
+        "demodulated": light("demodulated"),
+        "accumulated": light("accumulated"),
+        "history_length": StageView("moments", 0, 0, 1, dtype=stored),
+        "mean": StageView("moments", 1, signals, 1, 2, stored),
+        "moment_variance": variance("moments", 2, step=2),
+        "variance": variance("accumulated", 3 * signals),
     }
-    for level in range(1, iterations + 1):
-        views[f"level_{level}"] = StageView(level_buffer(level), 0, signals, 3, illumination=True)
-        views[f"level_{level}_variance"] = StageView(level_buffer(level), 3 * signals, signals, 1)
+    for level in range(1, settings.iterations + 1):
+        views[f"level_{level}"] = light(level_buffer(level))
+        views[f"level_{level}_variance"] = variance(level_buffer(level), 3 * signals)
     if any(p.kernel == "taa" for p in passes):
         views["modulated"] = StageView("modulated", 0, 0, 3)
         views["antialiased"] = StageView("antialiased", 0, 0, 3)

@@ -13,11 +13,12 @@ from svgf_cl import Settings, SettingsError
 from svgf_cl.settings import CHOICES, RANGES
 
 WHOLE = ("iterations",)
+SWITCHES = ("taa", "half_guides", "half_history")
 every_number = pytest.mark.parametrize("name", RANGES)
 
 
 def test_every_field_is_checked() -> None:
-    assert {field.name for field in fields(Settings)} == {*RANGES, *CHOICES, "taa"}
+    assert {field.name for field in fields(Settings)} == {*RANGES, *CHOICES, *SWITCHES}
 
 
 @every_number
@@ -62,10 +63,11 @@ def test_only_known_words_are_taken(name: str) -> None:
             Settings(**{name: value})
 
 
+@pytest.mark.parametrize("name", SWITCHES)
 @pytest.mark.parametrize("value", [None, 0, 1, "yes"])
-def test_taa_is_a_bool(value: Any) -> None:
-    with pytest.raises(SettingsError, match=r"Settings\.taa: expected True or False"):
-        Settings(taa=value)
+def test_switches_are_bools(name: str, value: Any) -> None:
+    with pytest.raises(SettingsError, match=rf"Settings\.{name}: expected True or False"):
+        Settings(**{name: value})
 
 
 def test_is_frozen() -> None:
@@ -75,4 +77,5 @@ def test_is_frozen() -> None:
 
 def test_no_number_compiles_anew() -> None:
     assert Settings(**{name: RANGES[name][1] for name in RANGES}).defines == Settings().defines
-    assert Settings(taa=True, precision="fast", taps="3x3").defines == {"TAA": 1, "FAST": 1, "RADIUS": 1}
+    chosen = Settings(taa=True, precision="fast", taps="3x3", half_guides=True, half_history=True).defines
+    assert chosen == {"TAA": 1, "FAST": 1, "RADIUS": 1, "HALF_GUIDES": 1, "HALF_HISTORY": 1}

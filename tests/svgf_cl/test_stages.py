@@ -26,26 +26,30 @@ PLANES = np.arange(8 * 4 * 5, dtype=np.float32).reshape(8, 4, 5)[:, 1:3, 1:4]  #
 )
 def test_view_picks_its_planes(view: StageView, expected: np.ndarray) -> None:
     found = view.of(PLANES)
+    assert found.dtype == np.float32
     assert_array_equal(found, expected)
     assert not np.shares_memory(found, PLANES)
 
 
 @pytest.mark.parametrize("signals", [1, 2])
-@pytest.mark.parametrize("settings", [Settings(), Settings(iterations=1, taa=True)])
+@pytest.mark.parametrize(
+    "settings", [Settings(), Settings(iterations=1, taa=True), Settings(half_guides=True, half_history=True)]
+)
 def test_every_stage_lies_within_a_buffer_that_is_written(signals: int, settings: Settings) -> None:
     inputs = Inputs(signals, 3, True, True, True)
     passes = pipeline(inputs, settings)
     written = {name for step in passes for name in step.writes}
-    for view in stage_views(passes, inputs, settings.iterations).values():
+    for view in stage_views(passes, inputs, settings).values():
         assert view.buffer in written
         count = max(view.signals, 1) * view.channels
-        assert view.first + view.step * (count - 1) < inputs.planes(view.buffer)
+        halves = np.dtype(np.float32).itemsize // np.dtype(view.dtype).itemsize
+        assert view.first + view.step * (count - 1) < halves * inputs.planes(view.buffer)
 
 
 def test_names_follow_the_pipeline() -> None:
     inputs = Inputs(1, 2, False, False, False)
     settings = Settings(iterations=2, taa=True)
-    assert list(stage_views(pipeline(inputs, settings), inputs, 2)) == [
+    assert list(stage_views(pipeline(inputs, settings), inputs, settings)) == [
         "normal",
         "depth",
         "demodulated",

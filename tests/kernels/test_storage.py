@@ -1,0 +1,61 @@
+"""Storage and weights that save time or memory: how far each takes the picture from the oracle, and what it cannot hold."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from svgf_cl import Denoiser, Frame, Settings
+from svgf_cl.reference import Reference
+from tests.denoising import feed
+from tests.frames import FULL, SPLIT, bumpy_sequence, traced_sequence, wall
+
+GUIDES = {"half_guides": True}
+HISTORY = {"half_history": True}
+FAST = {"precision": "fast"}
+
+# Root-mean-square error over all pixels, relative to the picture's mean; about three times what was measured. 16-bit floats
+# round by 2^-12 = 2.4e-4 of a value, normals by 2^-16; fast weights are up to 6 % larger, nearly all alike.
+BOUNDS = [
+    ({}, 1e-5),
+    (GUIDES, 1e-3),
+    (HISTORY, 1e-3),
+    (GUIDES | HISTORY, 1e-3),
+    (FAST, 3e-2),
+    (FAST | GUIDES | HISTORY, 3e-2),
+]
+
+
+@pytest.mark.parametrize(("choice", "bound"), BOUNDS, ids=[" ".join(choice) or "none" for choice, _ in BOUNDS])
+@pytest.mark.parametrize(
+    "frames",
+    [partial(bumpy_sequence, SPLIT), partial(traced_sequence, FULL)],
+    ids=["bumpy", "traced"],
+)
+def test_error_to_the_oracle(choice: dict[str, Any], bound: float, frames: Callable[[], Sequence[Frame]]) -> None:
+    sequence = frames()
+    den, oracle = Denoiser(sequence[0].shape, settings=Settings(**choice)), Reference(sequence[0].shape)
+    squares = []
+    for frame in sequence:
+        expected = oracle.denoise(frame)
+        squares.append(np.mean(np.square(den.denoise(frame) - expected)) / np.square(expected.mean()))
+    assert np.sqrt(np.mean(squares)) <= bound
+
+
+@pytest.mark.parametrize("choice", [HISTORY, GUIDES | HISTORY])
+def test_light_beyond_16_bits_is_held_at_their_greatest(choice: dict[str, Any]) -> None:
+    den = Denoiser((9, 33), settings=Settings(**choice))
+    for color in (1e6, 1e4, 1e-3):
+        out = den.denoise(wall((9, 33), color=color))
+        assert np.isfinite(out).all()
+        assert out.max() <= 65504
+
+
+def test_dim_light_keeps_three_digits() -> None:
+    out, _ = feed(wall(color=1e-3), **GUIDES, **HISTORY)
+    assert_allclose(out, 1e-3, rtol=1e-3)
