@@ -50,7 +50,7 @@ class StageView:
         stack = chosen.reshape(max(self.signals, 1), self.channels, *planes.shape[1:])
         images = np.array(np.moveaxis(stack, 1, -1), np.float32, order="C")
         if np.issubdtype(self.dtype, np.integer):
-            images /= np.iinfo(self.dtype).max
+            images /= 32767  # UNIT of storage.clh
         if self.root:
             images *= images
         if self.illumination:

@@ -61,21 +61,20 @@ UNUSUAL = Settings(
     normal_threshold=0.8,
     taa=True,
     alpha_taa=0.3,
-    taps="3x3",
 )
 
 # PoCL compiles a 16-wide kernel for one signal in 8 s and any other in 1 s: the latter serve where there is a choice.
 CASES = {
     "plain": Case(partial(bumpy_sequence, PLAIN)),
-    "full": Case(partial(bumpy_sequence, FULL)),
+    "full": Case(partial(bumpy_sequence, FULL), Settings(taps="5x5")),
     "split": Case(partial(bumpy_sequence, SPLIT)),
     "split, unusual settings": Case(partial(bumpy_sequence, SPLIT), UNUSUAL),
-    "traced": Case(partial(traced_sequence, FULL)),
-    "traced, antialiased": Case(partial(traced_sequence, SPLIT), Settings(taa=True)),
+    "traced": Case(partial(traced_sequence, FULL), Settings(taps="5x5")),
+    "traced, antialiased": Case(partial(traced_sequence, SPLIT), Settings(taa=True, taps="5x5")),
     "albedo alone": Case(partial(bumpy_sequence, ("color", "albedo")), width=1),
     "emission alone": Case(partial(bumpy_sequence, ("color", "emission"), motion=2), Settings(sigma_normal=16), 4),
     "ids alone": Case(partial(bumpy_sequence, ("color", "id"), motion=2), Settings(sigma_normal=32), 1),
-    "plain split": Case(partial(bumpy_sequence, SPLIT[:2], motion=2), Settings(taa=True), 8),
+    "plain split": Case(partial(bumpy_sequence, SPLIT[:2], motion=2), Settings(taa=True, taps="5x5"), 8),
 }
 
 every_case = pytest.mark.parametrize("case", CASES)

@@ -15,6 +15,9 @@ from svgf_cl.passes import Inputs, Pass
 from svgf_cl.settings import Settings
 
 FLOAT = 4  # bytes
+HALF = 2
+# Buffers of illumination and moments.
+LIGHT = ("demodulated", "accumulated", "history", "moments", "level")
 
 # Channels of the user's interleaved arrays.
 CHANNELS = {
@@ -53,8 +56,18 @@ class Cost:
 
 def cost(entry: Pass, inputs: Inputs, settings: Settings) -> Cost:
     """What a pass costs per pixel."""
-    planes = sum(planes_used(entry, name, inputs) for name in (*entry.reads, *entry.writes))
-    return Cost(FLOAT * planes, OPERATIONS[entry.kernel](inputs, settings))
+    moved = sum(bytes_used(entry, name, inputs, settings) for name in (*entry.reads, *entry.writes))
+    return Cost(moved, OPERATIONS[entry.kernel](inputs, settings))
+
+
+def bytes_used(entry: Pass, buffer: str, inputs: Inputs, settings: Settings) -> int:
+    """What a pass moves of a buffer or a user's array, per pixel; light and normals may be kept in 16 bits."""
+    planes = planes_used(entry, buffer, inputs)
+    kind = buffer.removeprefix("previous ").partition(" ")[0]
+    if kind in LIGHT:
+        return planes * (HALF if settings.half_history else FLOAT)
+    narrow = 3 if kind == "guide" and planes > 1 and settings.half_guides else 0
+    return planes * FLOAT - narrow * (FLOAT - HALF)
 
 
 def planes_used(entry: Pass, buffer: str, inputs: Inputs) -> int:
@@ -102,7 +115,7 @@ def variance(inputs: Inputs, settings: Settings) -> float:
 
 
 def atrous(inputs: Inputs, settings: Settings) -> float:
-    """Section 4: one level of 5x5 taps; those at +d and -d have the tolerance of depth in common.
+    """Section 4: one level; taps at +d and -d have the tolerance of depth in common.
 
     The three terms and the spline add up to one exponent; its factors are those of the pixel, not of the tap.
     """
@@ -113,7 +126,9 @@ def atrous(inputs: Inputs, settings: Settings) -> float:
     sums = 2 * 3 + 1 + 2 + 1  # w c; w^2 Var; w
     smooth = 9 * (2 + 1 + 1) + 1 + 1 + 4 + 1  # 3x3 Gaussian over hits; root; the scale of w_l
     normalise = 1 + 3 + 2
-    return surface + 12 * tolerance + 24 * exponent + inputs.signals * (24 * (light + sums) + smooth + normalise)
+    taps = (2 * settings.radius + 1) ** 2 - 1
+    shared = surface + taps // 2 * tolerance + taps * exponent
+    return shared + inputs.signals * (taps * (light + sums) + smooth + normalise)
 
 
 def modulate(inputs: Inputs, settings: Settings) -> float:

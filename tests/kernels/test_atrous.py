@@ -15,7 +15,7 @@ from tests.denoising import feed
 from tests.frames import SHAPE, noise, wall
 from tests.oracle import assert_follows_oracle, every_case
 
-SPLINE = np.array((1 / 16, 1 / 4, 3 / 8, 1 / 4, 1 / 16))
+SPLINES = {"5x5": np.array((1 / 16, 1 / 4, 3 / 8, 1 / 4, 1 / 16)), "3x3": np.array((1 / 4, 1 / 2, 1 / 4))}
 LEFT = np.arange(SHAPE[1]) < 17
 LEVELS = range(1, 6)
 
@@ -38,12 +38,15 @@ def test_constant_image_stays_constant(color: float) -> None:
         assert_allclose(den.stage(f"level_{level}"), np.float32(color), rtol=1e-6)
 
 
-def test_without_edges_a_level_is_the_spline() -> None:
+@pytest.mark.parametrize(("taps", "spline"), SPLINES.items())
+def test_without_edges_a_level_is_the_spline(taps: str, spline: np.ndarray) -> None:
     picture = noise()
-    _, den = feed(wall(color=picture), sigma_luminance=1000)
-    windows = sliding_window_view(picture, (5, 5), axis=(0, 1))
-    smooth = np.einsum("yxcij,i,j->yxc", windows, SPLINE, SPLINE)
-    assert_allclose(den.stage("level_1")[0][2:-2, 2:-2], smooth, rtol=2e-3)
+    _, den = feed(wall(color=picture), sigma_luminance=1000, taps=taps)
+    count = len(spline)
+    windows = sliding_window_view(picture, (count, count), axis=(0, 1))
+    smooth = np.einsum("yxcij,i,j->yxc", windows, spline, spline)
+    inside = slice(count // 2, -(count // 2))
+    assert_allclose(den.stage("level_1")[0][inside, inside], smooth, rtol=2e-3)
 
 
 def test_each_level_lowers_variance() -> None:
@@ -89,14 +92,15 @@ def test_exposure_does_not_matter() -> None:
         assert_allclose(feed(wall(color=exposure * noise()))[0], exposure * expected, rtol=1e-4)
 
 
+@pytest.mark.parametrize("taps", SPLINES)
 @pytest.mark.parametrize("iterations", LEVELS)
-def test_a_spot_spreads_as_far_as_the_levels_reach(iterations: int) -> None:
+def test_a_spot_spreads_as_far_as_the_levels_reach(iterations: int, taps: str) -> None:
     shape = (1, 200)
     spot = np.zeros((*shape, 3))
     spot[0, 100] = 1e12  # so bright that its faintest trace is no denormal number
-    out, _ = feed(wall(shape, color=spot), iterations=iterations, sigma_luminance=1000)
+    out, _ = feed(wall(shape, color=spot), iterations=iterations, sigma_luminance=1000, taps=taps)
     lit = np.flatnonzero(out[0, :, 0]) - 100
-    reach = 2 * (2**iterations - 1)
+    reach = len(SPLINES[taps]) // 2 * (2**iterations - 1)
     assert (lit.min(), lit.max()) == (-reach, reach)
 
 

@@ -1,4 +1,4 @@
-"""Storage and weights that save time or memory: how far each takes the picture from the oracle, and what it cannot hold."""
+"""What saves time or memory: how far it takes the picture from the oracle, and what it cannot hold."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ GUIDES = {"half_guides": True}
 HISTORY = {"half_history": True}
 FAST = {"precision": "fast"}
 
-# Root-mean-square error over all pixels, relative to the picture's mean; about three times what was measured. 16-bit floats
-# round by 2^-12 = 2.4e-4 of a value, normals by 2^-16; fast weights are up to 6 % larger, nearly all alike.
+# Root-mean-square error over all pixels, relative to the picture's mean; about three times what was measured. 16-bit
+# floats round by 2^-12 = 2.4e-4 of a value, normals by 2^-16; fast weights are up to 6 % larger, nearly all alike.
 BOUNDS = [
     ({}, 1e-5),
-    (GUIDES, 1e-3),
-    (HISTORY, 1e-3),
-    (GUIDES | HISTORY, 1e-3),
+    (GUIDES, 2e-3),
+    (HISTORY, 2e-3),
+    (GUIDES | HISTORY, 3e-3),
     (FAST, 3e-2),
     (FAST | GUIDES | HISTORY, 3e-2),
 ]
 
 
-@pytest.mark.parametrize(("choice", "bound"), BOUNDS, ids=[" ".join(choice) or "none" for choice, _ in BOUNDS])
+@pytest.mark.parametrize(("choice", "bound"), BOUNDS, ids=[" ".join(choice) or "precise" for choice, _ in BOUNDS])
 @pytest.mark.parametrize(
     "frames",
     [partial(bumpy_sequence, SPLIT), partial(traced_sequence, FULL)],

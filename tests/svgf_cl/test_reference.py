@@ -302,7 +302,7 @@ class TestAtrous:
         normal = np.array(((0, 0, 1), (0, 0.1, np.sqrt(1 - 0.01))))
         _, guides = demodulate(wall((1, 2), depth=((2, 2.5),), normal=normal[None]))
         picture, var = np.ones((1, 1, 2, 3)) * np.array((1.0, 3.0))[:, None], np.array((((4.0, 1.0),),))
-        color, after = atrous(picture, var, guides, 0, Settings())
+        color, after = atrous(picture, var, guides, 0, Settings(taps="5x5"))
         smooth = (4 / 2 + 1 / 4) / (3 / 4)
         w_z, w_n = np.exp(-0.5 / (0.5 + 1e-3 * 2)), np.exp(128 * (np.sqrt(1 - 0.01) - 1))
         w_l = np.exp(-2 / (4 * np.sqrt(smooth) + 1e-3))
@@ -313,7 +313,7 @@ class TestAtrous:
     def test_depth_weight_of_a_distant_tap(self) -> None:
         y, x = np.indices(SHAPE)
         guides = guides_of(wall(depth=8 + 0.5 * x - 0.25 * y))
-        weight = surface_weight(guides, depth_gradient(guides.depth), (2, -1), 4, Settings(sigma_depth=2))
+        weight = surface_weight(guides, depth_gradient(guides.depth), (2, -1), 4, Settings(taps="5x5", sigma_depth=2))
         slope = 2 * 0.5 + 0.25
         assert_allclose(weight[6, 3], np.exp(-4 * slope / (4 * (2 * slope + 1e-3 * 8 * 2))))
 
@@ -325,8 +325,8 @@ class TestAtrous:
     def test_weight_is_symmetric_on_a_facing_surface(self, rng: np.random.Generator, offset: tuple[int, int]) -> None:
         guides = guides_of(wall(normal=FACING + rng.normal(0, 0.1, (*SHAPE, 3))))
         gradient = depth_gradient(guides.depth)
-        there = surface_weight(guides, gradient, offset, 2, Settings())
-        back = surface_weight(guides, gradient, (-offset[0], -offset[1]), 2, Settings())
+        there = surface_weight(guides, gradient, offset, 2, Settings(taps="5x5"))
+        back = surface_weight(guides, gradient, (-offset[0], -offset[1]), 2, Settings(taps="5x5"))
         y, x, inside = shifted(offset, SHAPE, 2)
         assert_allclose(there[inside], back[y, x][inside], rtol=1e-12)
         assert 0 < there[inside].min() < there.max() < 1
@@ -337,7 +337,7 @@ class TestAtrous:
         shape, h = (96, 96), np.array((1, 4, 6, 4, 1)) / 16
         illumination, guides = demodulate(wall(shape, color=1 + rng.random((*shape, 1)) * np.ones(3)))
         known = np.full((1, *shape), 1e12)
-        filtered, var = atrous(illumination, known, guides, level, Settings())
+        filtered, var = atrous(illumination, known, guides, level, Settings(taps="5x5"))
         edge = 2 * 2**level
         inner = np.s_[0, edge:-edge, edge:-edge]
         factor = (h**2).sum() ** 2

@@ -50,11 +50,19 @@ def test_two_signals_share_the_geometry() -> None:
 
 
 def test_a_level_costs_its_taps() -> None:
-    """24 taps: each at least an exponential and the weighing of three colours, one variance and the weight."""
-    level = costs(INPUTS)["atrous 1"]
-    assert 24 * (14 + 10) < level.flops < 24 * 50
-    fast = costs(INPUTS, Settings(precision="fast"))["atrous 1"]
-    assert level.flops - fast.flops == 24 * (14 - 2), "an exponential a tap"
+    """Each at least an exponential and the weighing of three colours, one variance and the weight."""
+    for taps, count in (("5x5", 24), ("3x3", 8)):
+        level = costs(INPUTS, Settings(taps=taps))["atrous 1"]
+        assert count * (14 + 10) < level.flops < count * 50 + 100
+        fast = costs(INPUTS, Settings(taps=taps, precision="fast"))["atrous 1"]
+        assert level.flops - fast.flops == count * (14 - 2), "an exponential a tap"
+
+
+def test_16_bits_move_fewer_bytes() -> None:
+    full, half = (costs(INPUTS, Settings(half_guides=chosen, half_history=chosen)) for chosen in (False, True))
+    assert full["atrous 1"].bytes - half["atrous 1"].bytes == 2 * (3 + 4 + 4)  # normals, light in and out
+    assert full["demodulate"].bytes - half["demodulate"].bytes == 2 * (3 + 3)
+    assert full["modulate"].bytes - half["modulate"].bytes == 2 * 3
 
 
 def test_costs_add_and_scale() -> None:
