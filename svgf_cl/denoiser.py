@@ -13,14 +13,15 @@ import pyopencl as cl
 import pyopencl.array as cl_array
 
 from svgf_cl import devices, programs
-from svgf_cl.buffers import Buffers, Uploads, check_out
+from svgf_cl.buffers import Buffers
 from svgf_cl.errors import DeviceError, FrameError, SvgfError
 from svgf_cl.frame import Frame, Shape
-from svgf_cl.passes import OUT, Inputs, Pass, pipeline
+from svgf_cl.passes import Inputs, Pass, pipeline
 from svgf_cl.planes import Layout
 from svgf_cl.settings import Settings
 from svgf_cl.stages import StageView, stage_views
 from svgf_cl.tuning import Tuning, best_tuning
+from svgf_cl.user_arrays import UserArrays, check_out
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,7 @@ class Denoiser:
         self.tuning = check_tuning(tuning, self.queue.device)
         self._layout = layout_of(self.shape, self.tuning.row_alignment)
         self._keep_stages = keep_stages
-        self._uploads = Uploads(self.queue)
+        self._arrays = UserArrays(self.queue)
         self._plan: Plan | None = None
         self._events: list[tuple[str, cl.Event]] = []
 
@@ -125,19 +126,14 @@ class Denoiser:
         inputs = Inputs.of(frame)
         result = self._result(frame) if out is None else out
         check_out(result, (*self.shape, 3))
-        on_host = isinstance(result, np.ndarray)
-        buffers = {name: self._uploads.buffer(name, getattr(frame, name)) for name in inputs.fields}
-        buffers[OUT] = self._uploads.keep(OUT, result.nbytes) if on_host else self._uploads.device_buffer(OUT, result)
-        check_apart(buffers)
+        buffers = self._arrays.buffers({name: getattr(frame, name) for name in inputs.fields}, result)
         plan = self._ready(inputs)
-        pending = [*wait_for, *unfinished(*frame.present().values(), result)]
-        if pending:
-            cl.enqueue_barrier(self.queue, wait_for=pending)
-        plan.planes.begin_frame()
-        self._events = [(launch.entry.name, self._run(launch, plan.planes, buffers)) for launch in plan.launches]
-        if on_host:
-            cl.enqueue_copy(self.queue, result, buffers[OUT])
-        else:
+        with self._arrays.in_use(buffers, result):
+            if pending := [*wait_for, *unfinished(*frame.present().values(), result)]:
+                cl.enqueue_barrier(self.queue, wait_for=pending)
+            plan.planes.begin_frame()
+            self._events = [(launch.entry.name, self._run(launch, plan.planes, buffers)) for launch in plan.launches]
+        if isinstance(result, cl_array.Array):
             result.add_event(self._events[-1][1])
             self.queue.flush()  # whoever waits for that event on another queue must not wait for ever
         return result
@@ -227,13 +223,6 @@ def unfinished(*arrays: Any) -> Iterator[cl.Event]:
     for value in arrays:
         if isinstance(value, cl_array.Array):
             yield from value.events
-
-
-def check_apart(buffers: dict[str, cl.Buffer]) -> None:
-    """Raise `FrameError` where the result would overwrite a field that neighbouring pixels still read."""
-    for name, buffer in buffers.items():
-        if name != OUT and buffer.int_ptr == buffers[OUT].int_ptr:
-            raise FrameError(OUT, "memory of its own", f"that of {name}")
 
 
 def check_settings(settings: Settings | None) -> Settings:
