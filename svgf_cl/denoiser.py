@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import operator
 from collections.abc import Iterator, Sequence
@@ -16,22 +17,13 @@ from svgf_cl import devices, programs
 from svgf_cl.buffers import Buffers
 from svgf_cl.errors import DeviceError, FrameError, SvgfError
 from svgf_cl.frame import Frame, Shape
-from svgf_cl.passes import Inputs, Pass, pipeline
+from svgf_cl.launch import Launch
+from svgf_cl.passes import OUT, Inputs, Pass, pipeline
 from svgf_cl.planes import Layout
 from svgf_cl.settings import Settings
 from svgf_cl.stages import StageView, stage_views
 from svgf_cl.tuning import Tuning, best_tuning
-from svgf_cl.user_arrays import UserArrays, check_out
-
-
-@dataclass(frozen=True)
-class Launch:
-    """A pass with its kernel built and its constant arguments in place."""
-
-    entry: Pass
-    kernel: cl.Kernel
-    work_items: tuple[int, int]
-    constants: tuple[Any, ...]
+from svgf_cl.user_arrays import UserArray, UserArrays, check_out
 
 
 @dataclass(frozen=True)
@@ -39,9 +31,14 @@ class Plan:
     """The pass table made ready for frames with one set of fields, and the history of the sequence so far."""
 
     inputs: Inputs
-    launches: tuple[Launch, ...]
     planes: Buffers
+    turns: Iterator[tuple[Launch, ...]]
     views: dict[str, StageView]
+
+    def next_frame(self) -> tuple[Launch, ...]:
+        """The launches of the next frame, after what was written in the last one became history."""
+        self.planes.begin_frame()
+        return next(self.turns)
 
 
 class Denoiser:
@@ -126,13 +123,13 @@ class Denoiser:
         inputs = Inputs.of(frame)
         result = self._result(frame) if out is None else out
         check_out(result, (*self.shape, 3))
-        buffers = self._arrays.buffers({name: getattr(frame, name) for name in inputs.fields}, result)
+        fields = {name: getattr(frame, name) for name in inputs.fields}
+        buffers = self._arrays.buffers(fields, result)
         plan = self._ready(inputs)
         with self._arrays.in_use(buffers, result):
-            if pending := [*wait_for, *unfinished(*frame.present().values(), result)]:
+            if pending := [*wait_for, *unfinished([*fields.values(), result], self.queue)]:
                 cl.enqueue_barrier(self.queue, wait_for=pending)
-            plan.planes.begin_frame()
-            self._events = [(launch.entry.name, self._run(launch, plan.planes, buffers)) for launch in plan.launches]
+            self._events = [(launch.name, self._run(launch, buffers)) for launch in plan.next_frame()]
         if isinstance(result, cl_array.Array):
             result.add_event(self._events[-1][1])
             self.queue.flush()  # whoever waits for that event on another queue must not wait for ever
@@ -188,27 +185,35 @@ class Denoiser:
         """The plan for these inputs, made on the first frame: kernels built, history blank."""
         if self._plan is None:
             passes = pipeline(inputs, self.settings)
-            launches = tuple(self._launch(entry, inputs) for entry in passes)
             planes = Buffers(self.queue, self._layout, passes, inputs, share=not self._keep_stages)
-            self._plan = Plan(inputs, launches, planes, stage_views(passes, inputs, self.settings))
+            turns = itertools.cycle(self._turns(passes, inputs, planes))
+            self._plan = Plan(inputs, planes, turns, stage_views(passes, inputs, self.settings))
         if inputs != self._plan.inputs:
             raise FrameError("fields", f"{self._plan.inputs} as before, or a call of reset", str(inputs))
         return self._plan
 
-    def _launch(self, entry: Pass, inputs: Inputs) -> Launch:
+    def _turns(self, passes: tuple[Pass, ...], inputs: Inputs, planes: Buffers) -> list[tuple[Launch, ...]]:
+        """The launches of odd and of even frames: this frame's buffers and the history take turns."""
+        turns = []
+        for _ in range(2):
+            planes.begin_frame()
+            turns.append(tuple(self._launch(entry, inputs, planes) for entry in passes))
+        return turns
+
+    def _launch(self, entry: Pass, inputs: Inputs, planes: Buffers) -> Launch:
         defines = {"VW": self.tuning.vector_width, **inputs.defines, **self.settings.defines}
         program = programs.build(self.queue.context, self.queue.device, entry.stage, defines)
-        scalars = [] if entry.step is None else [np.int32(entry.step)]
-        scalars += [np.float32(getattr(self.settings, name)) for name in entry.settings]
         kernel = cl.Kernel(program, entry.kernel)
         check_work_group(kernel, self.queue.device, self.tuning)
+        scalars = [] if entry.step is None else [np.int32(entry.step)]
+        scalars += [np.float32(getattr(self.settings, name)) for name in entry.settings]
+        user = {*inputs.fields, OUT}
+        buffers = [name if name in user else planes[name] for name in (*entry.reads, *entry.writes)]
         work_items = self._layout.work_items(self.tuning.vector_width, self.tuning.work_group, entry.step or 1)
-        return Launch(entry, kernel, work_items, (self._layout.size, *scalars))
+        return Launch(entry.name, kernel, (self._layout.size, *scalars, *buffers), work_items, self.tuning.work_group)
 
-    def _run(self, launch: Launch, planes: Buffers, user: dict[str, cl.Buffer]) -> cl.Event:
-        names = (*launch.entry.reads, *launch.entry.writes)
-        arguments = [user[name] if name in user else planes[name] for name in names]
-        return launch.kernel(self.queue, launch.work_items, self.tuning.work_group, *launch.constants, *arguments)
+    def _run(self, launch: Launch, user: dict[str, cl.Buffer]) -> cl.Event:
+        return launch.enqueue(self.queue, user)
 
     def _result(self, frame: Frame) -> Any:
         """A new array for the result, of the same kind as the frame's."""
@@ -218,11 +223,11 @@ class Denoiser:
         return np.empty(shape, np.float32)
 
 
-def unfinished(*arrays: Any) -> Iterator[cl.Event]:
-    """Events of device arrays that are still being computed, perhaps on another queue."""
+def unfinished(arrays: Sequence[UserArray], queue: cl.CommandQueue) -> Iterator[cl.Event]:
+    """Events of device arrays that may still be being computed: on another queue, as this one keeps its order."""
     for value in arrays:
         if isinstance(value, cl_array.Array):
-            yield from value.events
+            yield from (event for event in value.events if event.command_queue != queue)
 
 
 def check_settings(settings: Settings | None) -> Settings:

@@ -73,7 +73,7 @@ class UserArrays:
             raise FrameError(name, "an Array in the context of Denoiser(queue=...)", "one of another context")
         if not isinstance(value.base_data, cl.MemoryObjectHolder):
             raise FrameError(name, "an Array in a buffer or memory pool", type(value.base_data).__name__)
-        return cast(cl.Buffer, value.base_data)  # one from a pool is used just like it
+        return cast("cl.Buffer", value.base_data)  # one from a pool is used just like it
 
     def _wrapped(self, arrays: Mapping[str, np.ndarray]) -> dict[str, cl.Buffer]:
         """Buffers that are the arrays' own memory; no two may overlap (OpenCL 1.2, 5.2.1), so others are left out."""

@@ -13,6 +13,7 @@ import pyopencl.array as cl_array
 
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.frame import Frame, Shape
+from svgf_cl.launch import Launch
 from svgf_cl.passes import Inputs
 from svgf_cl.room import room_frame
 from svgf_cl.settings import Settings
@@ -42,12 +43,12 @@ class TimedDenoiser(Denoiser):
         super().__init__(*arguments, **options)
         self.waited: dict[str, float] = {}
 
-    def _run(self, launch: Any, planes: Any, user: Any) -> cl.Event:
+    def _run(self, launch: Launch, user: dict[str, cl.Buffer]) -> cl.Event:
         begin = time.perf_counter()
-        event = super()._run(launch, planes, user)
+        event = super()._run(launch, user)
         if self.waits:
             event.wait()
-            self.waited[launch.entry.name] = time.perf_counter() - begin
+            self.waited[launch.name] = time.perf_counter() - begin
         return event
 
     def span(self) -> float:

@@ -334,6 +334,13 @@ def test_a_field_still_being_computed_on_another_queue_is_waited_for(expected: n
     assert_array_equal(out.get(), expected)
 
 
+def test_an_array_finished_on_the_same_queue_is_not_waited_for(den: Denoiser, monkeypatch: pytest.MonkeyPatch) -> None:
+    frame = on_device(FRAME, den.queue)
+    assert frame.color.events
+    monkeypatch.delattr(cl, "enqueue_barrier")
+    den.denoise(frame)
+
+
 def test_a_result_knows_when_it_is_ready(den: Denoiser) -> None:
     out = den.denoise(on_device(FRAME, den.queue))
     assert out.events
