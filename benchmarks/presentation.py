@@ -132,8 +132,9 @@ def panel(axes: Axes, column: Column, results: Sequence[Result]) -> None:
         place = column.point(result)
         color = "tab:red" if number == 1 else "tab:blue"
         fill, ink = (color, "white") if result in front else ("white", color)
-        axes.plot(*place, "o", markersize=13, color=color, markerfacecolor=fill)
-        axes.annotate(str(number), place, ha="center", va="center_baseline", color=ink, fontsize=8)
+        layer = 2 + 1 / number  # where they lie on each other, the default on top
+        axes.plot(*place, "o", markersize=13, color=color, markerfacecolor=fill, zorder=layer)
+        axes.annotate(str(number), place, ha="center", va="center_baseline", color=ink, fontsize=8, zorder=layer)
     axes.set_xlabel("device ms a frame")
     axes.set_ylabel(column.title)
     axes.margins(0.08)
