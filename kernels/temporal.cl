@@ -130,11 +130,12 @@ INLINE History select_history(intv mask, History yes, History no) {
     return yes;
 }
 
+// `accumulated` may lie where `illumination` does: a pixel of either is touched by its own work-item alone.
 KERNEL temporal(const int4 size, const float alpha_color, const float alpha_moments, const float depth_threshold,
                 const float normal_threshold, __global const float *restrict motion,
-                __global const float *restrict guide, __global const light_t *restrict illumination,
+                __global const float *restrict guide, __global const light_t *illumination,
                 __global const float *restrict previous_guide, __global const light_t *restrict history,
-                __global const light_t *restrict previous_moments, __global light_t *restrict accumulated,
+                __global const light_t *restrict previous_moments, __global light_t *accumulated,
                 __global light_t *restrict moments) {
     const int x = first_column(), y = row();
     if (x >= size.x || y >= size.y) return;

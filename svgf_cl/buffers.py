@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import pyopencl as cl
 
 from svgf_cl.errors import SvgfError
-from svgf_cl.passes import Inputs, Pass, persistent_buffers, scratch_slots
+from svgf_cl.memory import Slot
+from svgf_cl.passes import PREVIOUS
 from svgf_cl.planes import Layout
 
 # What a buffer holds before the first frame: a guide of zeros shows nothing, so there is no history; NaN is no colour.
@@ -14,39 +17,51 @@ BLANK = {"antialiased": np.nan, "previous antialiased": np.nan}
 
 
 class Buffers:
-    """The planes that a pass table needs, by name; they begin as `BLANK` says."""
+    """The memory of a pass table by the names of its buffers; it begins as `BLANK` says.
 
-    def __init__(
-        self, queue: cl.CommandQueue, layout: Layout, passes: tuple[Pass, ...], inputs: Inputs, *, share: bool
-    ) -> None:
+    Parameters
+    ----------
+    queue : pyopencl.CommandQueue
+    layout : Layout
+    slots : sequence of Slot
+        As `svgf_cl.memory.memory_slots` gives them.
+    """
+
+    def __init__(self, queue: cl.CommandQueue, layout: Layout, slots: Sequence[Slot]) -> None:
         self._queue = queue
-        slots = scratch_slots(passes, share=share)
-        planes = {name: inputs.planes(name) for name in persistent_buffers(passes)}
-        sizes = {slot: max(inputs.planes(name) for name in slots if slots[name] == slot) for slot in slots.values()}
-        self.nbytes = sum(layout.nbytes(count) for count in (*planes.values(), *sizes.values()))
-        scratch = {slot: self._filled(0.0, layout.nbytes(count)) for slot, count in sizes.items()}
-        self._by_name = {
-            name: self._filled(BLANK.get(name, 0.0), layout.nbytes(count)) for name, count in planes.items()
+        self._slots = {name: slot for slot in slots for name in slot.buffers}
+        self._memory = {
+            slot.name: self._filled(BLANK.get(slot.name, 0.0), layout.nbytes(slot.planes.depth)) for slot in slots
         }
-        self._by_name |= {name: scratch[slot] for name, slot in slots.items()}
+        self._copies: dict[str, cl.Buffer] = {}
+
+    @property
+    def nbytes(self) -> int:
+        """Device memory in use, in bytes."""
+        return sum(buffer.size for buffer in (*self._memory.values(), *self._copies.values()))
 
     def __getitem__(self, name: str) -> cl.Buffer:
-        return self._by_name[name]
-
-    def survives(self, name: str) -> bool:
-        """Whether a buffer still holds at the frame's end what was written to it: no later one shares its memory."""
-        owners = [other for other, buffer in self._by_name.items() if buffer is self._by_name[name]]
-        return owners[-1] == name
+        return self._memory[self._slots[name].name]
 
     def begin_frame(self) -> None:
         """Turn what was written in the last frame into history."""
-        for previous in [name for name in self._by_name if name.startswith("previous ")]:
-            current = previous.removeprefix("previous ")
-            self._by_name[previous], self._by_name[current] = self._by_name[current], self._by_name[previous]
+        for previous in [name for name in self._memory if name.startswith(PREVIOUS)]:
+            current = previous.removeprefix(PREVIOUS)
+            self._memory[previous], self._memory[current] = self._memory[current], self._memory[previous]
+
+    def copy_aside(self, name: str) -> None:
+        """Have `read` find what a buffer holds now, though another takes its memory."""
+        if name not in self._copies:
+            self._copies[name] = allocate(self._queue, self[name].size)
+        cl.enqueue_copy(self._queue, self._copies[name], self[name])
+
+    def survives(self, name: str) -> bool:
+        """Whether `read` finds what was written to a buffer in this frame."""
+        return name in self._copies or self._slots[name].buffers[-1] == name
 
     def read(self, name: str) -> np.ndarray:
         """A copy of a whole buffer, flat float32."""
-        buffer = self._by_name[name]
+        buffer = self._copies.get(name, self[name])
         result = np.empty(buffer.size // 4, np.float32)
         cl.enqueue_copy(self._queue, result, buffer)
         return result

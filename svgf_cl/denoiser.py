@@ -18,10 +18,12 @@ from svgf_cl.buffers import Buffers
 from svgf_cl.errors import DeviceError, FrameError, SvgfError
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.launch import Launch
+from svgf_cl.memory import memory_slots
 from svgf_cl.passes import OUT, Inputs, Pass, pipeline
 from svgf_cl.planes import Layout
 from svgf_cl.settings import Settings
 from svgf_cl.stages import StageView, stage_views
+from svgf_cl.storage import stored
 from svgf_cl.tuning import Tuning, best_tuning
 from svgf_cl.user_arrays import UserArray, UserArrays, check_out
 
@@ -53,7 +55,7 @@ class Denoiser:
     queue : pyopencl.CommandQueue, optional
         In-order queue to work on; by default one on the fastest working device (`svgf_cl.devices.default_queue`).
     keep_stages : bool
-        Give every stage memory of its own, so that `stage` can read all of them; by default they share it.
+        Copy every stage aside, so that `stage` can read all of them; by default some make room for later ones.
     tuning : Tuning, optional
         How to cut the work on this device; by default what ``svgf-cl tune`` found best, else what suits most.
 
@@ -129,7 +131,9 @@ class Denoiser:
         with self._arrays.in_use(buffers, result):
             if pending := [*wait_for, *unfinished([*fields.values(), result], self.queue)]:
                 cl.enqueue_barrier(self.queue, wait_for=pending)
-            self._events = [(launch.name, self._run(launch, buffers)) for launch in plan.next_frame()]
+            self._events = [
+                (launch.entry.name, self._run(launch, plan.planes, buffers)) for launch in plan.next_frame()
+            ]
         if isinstance(result, cl_array.Array):
             result.add_event(self._events[-1][1])
             self.queue.flush()  # whoever waits for that event on another queue must not wait for ever
@@ -185,12 +189,16 @@ class Denoiser:
         """The plan for these inputs, made on the first frame: kernels built, history blank."""
         if self._plan is None:
             passes = pipeline(inputs, self.settings)
-            planes = Buffers(self.queue, self._layout, passes, inputs, share=not self._keep_stages)
+            planes = self._planes(passes, inputs)
             turns = itertools.cycle(self._turns(passes, inputs, planes))
             self._plan = Plan(inputs, planes, turns, stage_views(passes, inputs, self.settings))
         if inputs != self._plan.inputs:
             raise FrameError("fields", f"{self._plan.inputs} as before, or a call of reset", str(inputs))
         return self._plan
+
+    def _planes(self, passes: tuple[Pass, ...], inputs: Inputs) -> Buffers:
+        sizes = {name: stored(name, inputs, self.settings) for entry in passes for name in entry.writes if name != OUT}
+        return Buffers(self.queue, self._layout, memory_slots(passes, sizes))
 
     def _turns(self, passes: tuple[Pass, ...], inputs: Inputs, planes: Buffers) -> list[tuple[Launch, ...]]:
         """The launches of odd and of even frames: this frame's buffers and the history take turns."""
@@ -210,10 +218,14 @@ class Denoiser:
         user = {*inputs.fields, OUT}
         buffers = [name if name in user else planes[name] for name in (*entry.reads, *entry.writes)]
         work_items = self._layout.work_items(self.tuning.vector_width, self.tuning.work_group, entry.step or 1)
-        return Launch(entry.name, kernel, (self._layout.size, *scalars, *buffers), work_items, self.tuning.work_group)
+        return Launch(entry, kernel, (self._layout.size, *scalars, *buffers), work_items, self.tuning.work_group)
 
-    def _run(self, launch: Launch, user: dict[str, cl.Buffer]) -> cl.Event:
-        return launch.enqueue(self.queue, user)
+    def _run(self, launch: Launch, planes: Buffers, user: dict[str, cl.Buffer]) -> cl.Event:
+        event = launch.enqueue(self.queue, user)
+        for name in launch.entry.writes:
+            if self._keep_stages and name != OUT:
+                planes.copy_aside(name)
+        return event
 
     def _result(self, frame: Frame) -> Any:
         """A new array for the result, of the same kind as the frame's."""

@@ -7,6 +7,8 @@ from typing import Any
 
 import pyopencl as cl
 
+from svgf_cl.passes import Pass
+
 Grid = tuple[int, int]
 
 
@@ -15,8 +17,8 @@ class Launch:
 
     Parameters
     ----------
-    name : str
-        Label in profiles.
+    entry : Pass
+        What is launched.
     kernel : pyopencl.Kernel
         For this launch alone.
     arguments : sequence
@@ -26,9 +28,9 @@ class Launch:
     """
 
     def __init__(
-        self, name: str, kernel: cl.Kernel, arguments: Sequence[Any], work_items: Grid, work_group: Grid
+        self, entry: Pass, kernel: cl.Kernel, arguments: Sequence[Any], work_items: Grid, work_group: Grid
     ) -> None:
-        self.name = name
+        self.entry = entry
         self._kernel = kernel
         self._grid = work_items, work_group
         self._user = [(index, value) for index, value in enumerate(arguments) if isinstance(value, str)]

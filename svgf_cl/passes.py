@@ -1,7 +1,7 @@
 """The pipeline as a table: which kernel runs when, what it reads and what it writes.
 
-Labels of the profiler, names of the stages a debugger can look at, and the sharing of scratch memory all follow from
-this table.
+Labels of the profiler, names of the stages a debugger can look at, and the sharing of memory all follow from this
+table.
 """
 
 from __future__ import annotations
@@ -14,7 +14,10 @@ from svgf_cl.settings import Settings
 
 # Buffers that live from frame to frame. A pair is written anew every frame and read in the next as "previous ...".
 PAIRS = ("guide", "moments", "antialiased")
+PREVIOUS = "previous "
 HISTORY = ("history",)
+# What is made of what pixel by pixel, so that it may be written over it.
+IN_PLACE = {"accumulated": "demodulated"}
 # Where the user's result goes.
 OUT = "out"
 
@@ -66,7 +69,7 @@ class Inputs:
         return f"{', '.join(self.fields)} (motion of {self.motion} components)"
 
     def planes(self, buffer: str) -> int:
-        """Number of planes of a device buffer; a pair's halves and all levels are alike."""
+        """Number of planes of a device buffer."""
         light = 3 * self.signals
         with_variance = light + self.signals
         counts = {
@@ -79,7 +82,7 @@ class Inputs:
             "modulated": 3,
             "antialiased": 3,
         }
-        return counts[buffer.removeprefix("previous ").partition(" ")[0]]
+        return counts[kind_of(buffer)]
 
 
 @dataclass(frozen=True)
@@ -168,37 +171,12 @@ def level_buffer(level: int) -> str:
     return {0: "accumulated", 1: "history"}.get(level, f"level {level}")
 
 
-def persistent_buffers(passes: tuple[Pass, ...]) -> list[str]:
-    """The history buffers that these passes write, each pair with its previous half."""
+def kind_of(buffer: str) -> str:
+    """What a buffer holds: a pair's halves are of one kind, and so are all levels."""
+    return buffer.removeprefix(PREVIOUS).partition(" ")[0]
+
+
+def history_pairs(passes: tuple[Pass, ...]) -> list[str]:
+    """The pairs that these passes write."""
     written = {name for p in passes for name in p.writes}
-    pairs = [name for name in PAIRS if name in written]
-    return [*HISTORY, *pairs, *(f"previous {name}" for name in pairs)]
-
-
-def scratch_slots(passes: tuple[Pass, ...], *, share: bool = True) -> dict[str, int]:
-    """Memory slot of every buffer that lives within a frame; buffers never alive at once share a slot.
-
-    Parameters
-    ----------
-    passes : tuple of Pass
-    share : bool
-        False gives each buffer a slot of its own, so that all can be looked at after the frame.
-    """
-    persistent = {*persistent_buffers(passes), OUT}
-    first: dict[str, int] = {}
-    last: dict[str, int] = {}
-    for index, step in enumerate(passes):
-        for name in step.writes:
-            if name not in persistent:
-                first.setdefault(name, index)
-        for name in (*step.reads, *step.writes):
-            if name in first:
-                last[name] = index
-    slots: dict[str, int] = {}
-    busy_until: list[int] = []
-    for name, begin in first.items():
-        free = [slot for slot, end in enumerate(busy_until) if share and end < begin]
-        slot = free[0] if free else len(busy_until)
-        busy_until[slot : slot + 1] = [last[name]]
-        slots[name] = slot
-    return slots
+    return [name for name in PAIRS if name in written]

@@ -62,13 +62,13 @@ class Layout:
         """The kernels' `size` argument, an int4."""
         return np.array([self.width, self.height, self.pitch, self.plane], np.int32)
 
-    def nbytes(self, planes: int) -> int:
-        """Bytes of a buffer of so many float32 planes."""
-        return 4 * planes * self.plane
+    def nbytes(self, depth: int) -> int:
+        """Bytes of a buffer of so many bits a pixel."""
+        return depth // 8 * self.plane
 
     def crop(self, planes: np.ndarray) -> np.ndarray:
-        """The image inside: (n * plane,) -> (n, height, width), a view."""
-        stack = planes.reshape(-1, self.rows, self.pitch)
+        """The image inside: (n * plane,) -> (n, height, width), a view; a part of a plane at the end is left out."""
+        stack = planes[: len(planes) // self.plane * self.plane].reshape(-1, self.rows, self.pitch)
         return stack[:, HALO : HALO + self.height, HALO : HALO + self.width]
 
 

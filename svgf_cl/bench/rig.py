@@ -11,6 +11,7 @@ import numpy as np
 import pyopencl as cl
 import pyopencl.array as cl_array
 
+from svgf_cl.buffers import Buffers
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.launch import Launch
@@ -43,12 +44,12 @@ class TimedDenoiser(Denoiser):
         super().__init__(*arguments, **options)
         self.waited: dict[str, float] = {}
 
-    def _run(self, launch: Launch, user: dict[str, cl.Buffer]) -> cl.Event:
+    def _run(self, launch: Launch, planes: Buffers, user: dict[str, cl.Buffer]) -> cl.Event:
         begin = time.perf_counter()
-        event = super()._run(launch, user)
+        event = super()._run(launch, planes, user)
         if self.waits:
             event.wait()
-            self.waited[launch.name] = time.perf_counter() - begin
+            self.waited[launch.entry.name] = time.perf_counter() - begin
         return event
 
     def span(self) -> float:

@@ -7,48 +7,77 @@ import pyopencl as cl
 import pytest
 from numpy.testing import assert_array_equal
 
-from svgf_cl import Denoiser, SvgfError
+from svgf_cl import SvgfError
 from svgf_cl.buffers import Buffers
-from svgf_cl.passes import Inputs, persistent_buffers, pipeline
+from svgf_cl.memory import memory_slots
+from svgf_cl.passes import OUT, PREVIOUS, Inputs, history_pairs, pipeline
 from svgf_cl.planes import Layout
 from svgf_cl.settings import Settings
+from svgf_cl.storage import stored
 from tests.frames import FULL, SHAPE, bumpy_sequence
 
-FRAME = bumpy_sequence(FULL, count=1)[0]
+INPUTS = Inputs.of(bumpy_sequence(FULL, count=1)[0])
+LAYOUT = Layout(*SHAPE)
+PASSES = pipeline(INPUTS, Settings(taa=True))
+WRITTEN = {name for step in PASSES for name in step.writes} - {OUT}
+SLOTS = memory_slots(PASSES, {name: stored(name, INPUTS, Settings()) for name in WRITTEN})
 
 
-class TestBuffers:
-    INPUTS = Inputs.of(FRAME)
-    PASSES = pipeline(INPUTS, Settings(taa=True))
-    LAYOUT = Layout(*SHAPE)
+@pytest.fixture
+def buffers(queue: cl.CommandQueue) -> Buffers:
+    return Buffers(queue, LAYOUT, SLOTS)
 
-    @pytest.fixture
-    def buffers(self, queue: cl.CommandQueue) -> Buffers:
-        return Buffers(queue, self.LAYOUT, self.PASSES, self.INPUTS, share=True)
 
-    def test_history_begins_blank(self, buffers: Buffers) -> None:
-        for name in persistent_buffers(self.PASSES):
+def write(queue: cl.CommandQueue, buffer: cl.Buffer, value: float) -> None:
+    cl.enqueue_fill_buffer(queue, buffer, np.float32(value), 0, buffer.size)
+
+
+def test_history_begins_blank(buffers: Buffers) -> None:
+    for pair in history_pairs(PASSES):
+        for name in (pair, PREVIOUS + pair):
             assert_array_equal(buffers.read(name), np.float32(np.nan if "antialiased" in name else 0))
+    assert_array_equal(buffers.read("history"), 0)
 
-    def test_nbytes_is_all_memory(self, buffers: Buffers) -> None:
-        names = {name for step in self.PASSES for name in (*step.reads, *step.writes)} - {*self.INPUTS.fields, "out"}
-        assert buffers.nbytes == sum(b.size for b in {buffers[name].int_ptr: buffers[name] for name in names}.values())
 
-    def test_what_was_written_becomes_history(self, buffers: Buffers) -> None:
-        guide, previous = buffers["guide"], buffers["previous guide"]
+def test_nbytes_is_all_memory(buffers: Buffers) -> None:
+    every = [*WRITTEN, *(PREVIOUS + name for name in history_pairs(PASSES))]
+    assert buffers.nbytes == sum(b.size for b in {buffers[name].int_ptr: buffers[name] for name in every}.values())
+
+
+def test_what_was_written_becomes_history(buffers: Buffers) -> None:
+    guide, previous = buffers["guide"], buffers["previous guide"]
+    buffers.begin_frame()
+    assert (buffers["guide"], buffers["previous guide"]) == (previous, guide)
+
+
+def test_a_guest_goes_where_its_memory_goes(buffers: Buffers) -> None:
+    for _ in range(2):
+        assert buffers["level 3"] is buffers["previous guide"]
         buffers.begin_frame()
-        assert (buffers["guide"], buffers["previous guide"]) == (previous, guide)
-
-    def test_last_owner_of_shared_memory_survives(self, buffers: Buffers) -> None:
-        assert buffers.survives("guide")
-        assert buffers.survives("modulated") or buffers.survives("level 5")
-        assert not buffers.survives("demodulated")
-
-    def test_without_sharing_all_survive(self, queue: cl.CommandQueue) -> None:
-        buffers = Buffers(queue, self.LAYOUT, self.PASSES, self.INPUTS, share=False)
-        assert all(buffers.survives(name) for step in self.PASSES for name in step.writes if name != "out")
 
 
-def test_too_large_an_image_is_refused_with_its_size() -> None:
+def test_last_owner_of_shared_memory_survives(buffers: Buffers) -> None:
+    assert buffers.survives("guide")
+    assert buffers.survives("modulated")
+    assert not buffers.survives("demodulated")
+
+
+def test_a_copy_survives_the_next_owner(buffers: Buffers, queue: cl.CommandQueue) -> None:
+    for value, name in enumerate(("demodulated", "accumulated")):
+        write(queue, buffers[name], value)
+        buffers.copy_aside(name)
+        assert buffers.survives(name)
+    assert_array_equal(buffers.read("demodulated"), 0)
+    assert_array_equal(buffers.read("accumulated"), 1)
+
+
+def test_copies_count_as_memory_and_are_made_once(buffers: Buffers) -> None:
+    before = buffers.nbytes
+    for _ in range(2):
+        buffers.copy_aside("level 2")
+        assert buffers.nbytes == before + buffers["level 2"].size
+
+
+def test_too_large_an_image_is_refused_with_its_size(queue: cl.CommandQueue) -> None:
     with pytest.raises(SvgfError, match=r"no room for a buffer of \d+ MiB"):
-        Buffers(Denoiser((1, 1)).queue, Layout(1 << 18, 1 << 18), TestBuffers.PASSES, TestBuffers.INPUTS, share=True)
+        Buffers(queue, Layout(1 << 18, 1 << 18), SLOTS)

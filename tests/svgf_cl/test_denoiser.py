@@ -17,6 +17,7 @@ from svgf_cl import Denoiser, Frame, Settings, SvgfError
 from svgf_cl.accuracy import DECISION, largest_channel, relative_error
 from svgf_cl.frame import CHANNELS, Shape
 from svgf_cl.passes import Inputs, pipeline
+from svgf_cl.planes import HALO, Layout
 from svgf_cl.reference import Reference
 from svgf_cl.settings import RANGES
 from tests.denoising import feed, vector_width
@@ -243,10 +244,35 @@ class TestMemory:
         den.reset()
         assert den.nbytes == 0
 
-    def test_sharing_saves(self) -> None:
-        shared = Denoiser(TINY)
-        shared.denoise(wall(TINY))
-        assert shared.nbytes < feed(wall(TINY))[1].nbytes
+    def test_copies_of_stages_count(self) -> None:
+        den = Denoiser(TINY)
+        den.denoise(wall(TINY))
+        assert den.nbytes < feed(wall(TINY))[1].nbytes
+
+    def test_is_that_of_22_planes(self) -> None:
+        """Two guides of 4, moments of 3, and 4 each of history and of what is filtered."""
+        den = Denoiser((90, 160))
+        den.denoise(wall((90, 160)))
+        assert den.nbytes == 22 * 4 * Layout(90, 160, den.tuning.row_alignment).plane
+
+    def test_16_bits_save_memory(self) -> None:
+        den = Denoiser((90, 160), settings=Settings(half_guides=True, half_history=True))
+        den.denoise(wall((90, 160)))
+        assert den.nbytes == 13 * 4 * Layout(90, 160, den.tuning.row_alignment).plane
+
+    @pytest.mark.parametrize("halves", [False, True])
+    def test_halos_stay_clean(self, halves: bool) -> None:
+        """Whoever has had its memory: nothing is seen outside the image."""
+        den = Denoiser(SHAPE, settings=Settings(half_guides=halves, half_history=halves))
+        layout = Layout(*SHAPE, den.tuning.row_alignment)
+        for frame in bumpy_sequence(SPLIT, count=5):
+            den.denoise(frame)
+            for kind, dtype in (("guide", np.float32), ("moments", np.float16 if halves else np.float32)):
+                planes = den._plan.planes.read(kind).view(dtype)
+                planes = planes[: len(planes) // layout.plane * layout.plane].reshape(-1, layout.rows, layout.pitch)
+                width = -(-SHAPE[1] // den.tuning.vector_width) * den.tuning.vector_width
+                planes[:, HALO : HALO + SHAPE[0], HALO : HALO + width] = 0
+                assert not planes[: 2 if halves else None].any()
 
 
 class TestProfile:

@@ -10,6 +10,7 @@ from numpy.testing import assert_array_equal
 
 from svgf_cl import Denoiser
 from svgf_cl.launch import Launch
+from svgf_cl.passes import Pass
 from tests.frames import FULL, SHAPE, bumpy_sequence
 from tests.svgf_cl.test_user_arrays import on_device
 
@@ -25,7 +26,7 @@ kernel void scaled(global const float *in, const float factor, const int4 shift,
 def test_users_arrays_are_set_anew_and_all_else_stays(queue: cl.CommandQueue) -> None:
     kernel = cl.Kernel(cl.Program(queue.context, SOURCE).build(), "scaled")
     arguments = ("in", np.float32(2), np.array([0, 0, 0, 7], np.int32), "out")
-    launch = Launch("scaled", kernel, arguments, (4, 2), (4, 1))
+    launch = Launch(Pass("scaled", ("in",), ("out",)), kernel, arguments, (4, 2), (4, 1))
     for start in (0, 10):
         given = cl_array.arange(queue, start, start + 8, dtype=np.float32)
         out = cl_array.zeros(queue, 8, np.float32)

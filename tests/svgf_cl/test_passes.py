@@ -1,8 +1,6 @@
-"""The pass table: everything read was written before, and shared memory is free when it is taken."""
+"""The pass table: everything read was written before, and everything written is read."""
 
 from __future__ import annotations
-
-import itertools
 
 import numpy as np
 import pytest
@@ -10,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from svgf_cl import Settings
-from svgf_cl.passes import OUT, Inputs, persistent_buffers, pipeline, scratch_slots
+from svgf_cl.passes import HISTORY, OUT, PREVIOUS, Inputs, history_pairs, kind_of, pipeline
 from tests.frames import FULL, PLAIN, SPLIT, bumpy, only
 
 every_inputs = st.builds(
@@ -48,8 +46,7 @@ def test_names_are_unique(inputs: Inputs, settings: Settings) -> None:
 @given(every_inputs, every_settings)
 def test_everything_read_is_there(inputs: Inputs, settings: Settings) -> None:
     passes = pipeline(inputs, settings)
-    there = {*inputs.fields, *(name for name in persistent_buffers(passes) if name not in passes_writes(passes))}
-    there |= {"history"}  # read before it is written: it is the last frame's
+    there = {*inputs.fields, *HISTORY, *(PREVIOUS + name for name in history_pairs(passes))}  # from the last frame
     for step in passes:
         assert there.issuperset(step.reads)
         there |= set(step.writes)
@@ -78,37 +75,8 @@ def test_first_level_writes_the_colour_history() -> None:
     assert first.writes == ("history",)
 
 
-@given(every_inputs, every_settings, st.booleans())
-def test_what_is_read_is_what_was_last_written_to_its_memory(inputs: Inputs, settings: Settings, share: bool) -> None:
-    passes = pipeline(inputs, settings)
-    slots = scratch_slots(passes, share=share)
-    holder: dict[int, str] = {}
-    for step in passes:
-        assert all(holder[slots[name]] == name for name in step.reads if name in slots)
-        holder |= {slots[name]: name for name in step.writes if name in slots}
-
-
-@given(every_inputs, every_settings, st.booleans())
-def test_no_pass_uses_one_memory_twice(inputs: Inputs, settings: Settings, share: bool) -> None:
-    passes = pipeline(inputs, settings)
-    slots = scratch_slots(passes, share=share)
-    for step in passes:
-        for one, other in itertools.combinations({*step.reads, *step.writes} & slots.keys(), 2):
-            assert slots[one] != slots[other]
-
-
-@given(every_inputs, every_settings)
-def test_history_and_result_are_never_shared(inputs: Inputs, settings: Settings) -> None:
-    passes = pipeline(inputs, settings)
-    kept = {*persistent_buffers(passes), OUT}
-    assert scratch_slots(passes).keys() == passes_writes(passes) - kept
-    assert kept >= {"history", "guide", "previous guide", "moments", "previous moments"}
-    assert ("antialiased" in kept) == settings.taa
-
-
-@given(every_inputs, every_settings)
-def test_sharing_takes_two_slots_and_not_sharing_one_each(inputs: Inputs, settings: Settings) -> None:
-    passes = pipeline(inputs, settings)
-    assert len(set(scratch_slots(passes).values())) == 2
-    alone = scratch_slots(passes, share=False)
-    assert len(set(alone.values())) == len(alone)
+@pytest.mark.parametrize(
+    ("buffer", "kind"), [("guide", "guide"), ("previous guide", "guide"), ("level 2", "level"), ("out", "out")]
+)
+def test_kinds_of_buffers(buffer: str, kind: str) -> None:
+    assert kind_of(buffer) == kind

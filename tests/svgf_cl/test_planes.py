@@ -18,7 +18,7 @@ layouts = st.builds(
 @given(layouts, st.integers(1, 3))
 def test_crop_finds_every_pixel(layout: Layout, count: int) -> None:
     planes = np.arange(count * layout.plane, dtype=np.float32)
-    assert planes.nbytes == layout.nbytes(count)
+    assert planes.nbytes == layout.nbytes(32 * count)
     k, y, x = np.indices((count, layout.height, layout.width))
     assert_array_equal(layout.crop(planes), k * layout.plane + (y + HALO) * layout.pitch + HALO + x)
 
@@ -44,6 +44,11 @@ def test_rows_are_no_whole_pages_apart(width: int, row_alignment: int) -> None:
 def test_size_is_the_kernels_int4(layout: Layout) -> None:
     assert layout.size.dtype == np.int32
     assert layout.size.tolist() == [layout.width, layout.height, layout.pitch, layout.rows * layout.pitch]
+
+
+def test_crop_leaves_out_half_a_plane_at_the_end() -> None:
+    layout = Layout(2, 3)
+    assert layout.crop(np.zeros(5 * layout.plane // 2)).shape == (2, 2, 3)
 
 
 def test_crop_is_a_view() -> None:

@@ -9,6 +9,7 @@ from numpy.testing import assert_array_equal
 from svgf_cl import Settings
 from svgf_cl.passes import Inputs, pipeline
 from svgf_cl.stages import StageView, stage_views
+from svgf_cl.storage import stored
 
 PLANES = np.arange(8 * 4 * 5, dtype=np.float32).reshape(8, 4, 5)[:, 1:3, 1:4]  # cropped, as on the way from a device
 
@@ -42,8 +43,8 @@ def test_every_stage_lies_within_a_buffer_that_is_written(signals: int, settings
     for view in stage_views(passes, inputs, settings).values():
         assert view.buffer in written
         count = max(view.signals, 1) * view.channels
-        halves = np.dtype(np.float32).itemsize // np.dtype(view.dtype).itemsize
-        assert view.first + view.step * (count - 1) < halves * inputs.planes(view.buffer)
+        end = 8 * np.dtype(view.dtype).itemsize * (view.first + view.step * (count - 1) + 1)
+        assert end <= stored(view.buffer, inputs, settings).depth
 
 
 def test_names_follow_the_pipeline() -> None:
