@@ -63,17 +63,17 @@ class Settings:
         Share of the new frame in the antialiased picture. 0.2: on the moving demo 0.8 dB better than the usual 0.1, for
         each resampling of the history softens it; less suits a still camera.
     taps : "5x5" or "3x3"
-        Of an a-trous level: the paper's cubic B-spline, or the linear one, which sees a third of the neighbours. 3x3: over
-        five levels it takes 0.6 of the time and blurs less, 0.8 to 1.3 dB better in an evenly lit box and as good in Sponza,
-        where it leaves 7 % more flicker.
+        Of an a-trous level: the paper's cubic B-spline, or the linear one, which sees a third of the neighbours. 3x3:
+        over five levels it takes 0.6 of the time and blurs less, 0.8 to 1.3 dB better in an evenly lit box and as good
+        in Sponza, where it leaves 7 % more flicker.
     precision : "precise" or "fast"
         Weights of the a-trous filter and the spatial variance: exponentials to 4e-6, or with straight lines between the
-        powers of two, up to 6 % larger. Fast takes a fifth less time and looks the same (0.01 to
-        0.07 dB), yet single pixels are off the exact filter by up to a tenth of the picture's mean. Precise, so that a
+        powers of two, up to 6 % larger. Fast takes a tenth less time (of 5x5 taps a fifth) and looks the same, to
+        0.07 dB; yet single pixels are off the exact filter by up to a tenth of the picture's mean. Precise, so that a
         picture is the same to 1e-6 wherever it is made.
     half_guides : bool
-        Keep normals as 16-bit whole numbers: 6 of the guide's 16 bytes less a pixel, an error of 2^-16. Off: no faster on a
-        CPU, where the time saved on memory is spent on converting.
+        Keep normals as 16-bit whole numbers: 6 of the guide's 16 bytes less a pixel, an error of 2^-16. Off: no faster
+        on a CPU, where the time saved on memory is spent on converting.
     half_history : bool
         Keep illumination, its history and its moments as 16-bit floats: half their memory, an error of 2^-12, and no
         illumination above 65504. Off: no faster on a CPU.
