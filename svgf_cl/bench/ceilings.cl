@@ -1,11 +1,14 @@
-// What a device can do at best, for the roofline: copy memory, and multiply and add.
+// What a device can do at best, for the roofline: copy memory, load from the nearest cache, and multiply and add.
 //
 //   copy       target[i] = source[i], all of it `repeats` times;  item g takes the vectors g * first + k * step, k < count
+//   load       CHAINS sums of vectors from as many streams, each `offset` floats off where a vector begins, `count` times
 //   multiply   CHAINS independent sums a := a * b + c per lane, `count` times
 //
 // in   source;  out  target
 // A CPU's item takes neighbouring vectors (step 1), a GPU's takes every so-manieth: what each of them fetches best.
 // No `restrict`: a compiler that knew source and target apart might do the repeats but once.
+//
+// Streams lie 33 cache lines apart, so that they all fit into the nearest cache, each in other sets of it.
 //
 // Macros set by the host: VW 1 | 4 | 8 | 16 (floats of a vector), CHAINS.
 
@@ -14,10 +17,15 @@
 #if VW == 1
 typedef float floatv;
 #define SUM(v) (v)
+#define LOAD(p) (*(p))
 #else
 typedef CAT(float, VW) floatv;
 #define SUM(v) (v).s0
+#define LOAD(p) CAT(vload, VW)(0, p)
 #endif
+
+#define STREAM (33 * 16)  // floats from one stream to the next
+#define VECTORS 16        // of a stream, in turn
 
 __kernel void copy(const int first, const int step, const int count, const int repeats, __global const floatv *source,
                    __global floatv *target) {
@@ -25,6 +33,21 @@ __kernel void copy(const int first, const int step, const int count, const int r
     for (int r = 0; r < repeats; ++r) {
         for (int k = 0; k < count; ++k) target[begin + k * step] = source[begin + k * step];
     }
+}
+
+__kernel void load(const int count, const int offset, __global const float *source, __global float *target) {
+    floatv sums[CHAINS];
+#pragma unroll
+    for (int i = 0; i < CHAINS; ++i) sums[i] = (floatv)(0.0f);
+    for (int k = 0; k < count; ++k) {
+        __global const float *p = source + VW * ((int)get_local_id(0) + k % VECTORS) + offset;
+#pragma unroll
+        for (int i = 0; i < CHAINS; ++i) sums[i] += LOAD(p + i * STREAM);
+    }
+    floatv sum = (floatv)(0.0f);
+#pragma unroll
+    for (int i = 0; i < CHAINS; ++i) sum += sums[i];
+    target[get_global_id(0)] = SUM(sum);
 }
 
 __kernel void multiply(const int count, const float b, const float c, __global float *target) {

@@ -1,4 +1,4 @@
-"""What a device can do at best: memory copied per second, by size, and multiply-adds per second."""
+"""What a device can do at best: copy memory, by size; load from its nearest cache; multiply and add."""
 
 from __future__ import annotations
 
@@ -20,8 +20,9 @@ COPIED = 2**28  # bytes read and written per sample, at least: launching is noth
 CHAINS = 12  # sums in flight: a core has two units, each with a result every cycle after four
 # Work-items of a compute unit: enough to keep a GPU's units full, and to share a CPU's work evenly.
 GPU_ITEMS, CPU_ITEMS = 2048, 8
-MULTIPLIED = 4e-3  # seconds of a sample
-TRIES = 9  # to find out how many multiply-adds that are; the first ones are slow
+COMPUTED = 4e-3  # seconds of a sample of loads or multiply-adds
+TRIES = 9  # to find out how many those are; the first ones are slow
+ALIGNED, OFFSET = 0, 1  # floats that a load begins off where vectors do
 
 
 @dataclass(frozen=True)
@@ -32,11 +33,15 @@ class Ceilings:
     ----------
     bandwidth : sequence of (int, float), bytes and bytes / s
         Working set (source and target) and how fast it is copied at best: bytes read plus bytes written.
+    aligned_loads, offset_loads : float, bytes / s
+        Loaded from the nearest cache in vectors that begin where a vector does, and one float beside.
     flops : float, 1 / s
         Single precision operations, a multiply-add counted as two.
     """
 
     bandwidth: Sequence[tuple[int, float]]
+    aligned_loads: float
+    offset_loads: float
     flops: float
 
     def bandwidth_at(self, working_set: float) -> float:
@@ -52,6 +57,11 @@ class CeilingBench:
     ----------
     queue : pyopencl.CommandQueue
         With profiling.
+
+    Attributes
+    ----------
+    count : int
+        Rounds of `load` and `multiply`: so many that a sample takes long enough.
     """
 
     def __init__(self, queue: cl.CommandQueue) -> None:
@@ -66,15 +76,15 @@ class CeilingBench:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", cl.CompilerWarning)  # drivers report success in their log
             program.build([*OPTIONS, f"-DVW={self._width}", f"-DCHAINS={CHAINS}"])
-        self._copy, self._multiply = cl.Kernel(program, "copy"), cl.Kernel(program, "multiply")
+        self._copy, self._load, self._multiply = (cl.Kernel(program, name) for name in ("copy", "load", "multiply"))
         room = min(max(WORKING_SETS) // 2, device.max_mem_alloc_size)
         self.source, self.target = (cl.Buffer(queue.context, cl.mem_flags.READ_WRITE, room) for _ in range(2))
         for buffer in (self.source, self.target):
             cl.enqueue_fill_buffer(queue, buffer, np.float32(1), 0, room)
         self.working_sets = [size for size in map(self._whole, WORKING_SETS) if 0 < size <= 2 * room]
-        self._count = 1000
+        self.count = 1000
         fastest = min(self.multiply() for _ in range(TRIES))
-        self._count = max(1, round(self._count * MULTIPLIED / fastest))
+        self.count = max(1, round(self.count * COMPUTED / fastest))
 
     def copy(self, working_set: int) -> float:
         """Seconds to read and write each byte of a working set (one of `working_sets`) once, on average."""
@@ -84,14 +94,23 @@ class CeilingBench:
         scalars = [np.int32(value) for value in (first, step, count, repeats)]
         return self._seconds(self._copy, *scalars, self.source, self.target) / repeats
 
+    def load(self, offset: int) -> float:
+        """Seconds to load `loaded` bytes; `ALIGNED`, or `OFFSET` from where vectors begin."""
+        return self._seconds(self._load, np.int32(self.count), np.int32(offset), self.source, self.target)
+
     def multiply(self) -> float:
         """Seconds for `operations` floating-point operations."""
-        return self._seconds(self._multiply, np.int32(self._count), np.float32(0.5), np.float32(1), self.target)
+        return self._seconds(self._multiply, np.int32(self.count), np.float32(0.5), np.float32(1), self.target)
 
     @property
     def operations(self) -> int:
         """What `multiply` computes."""
-        return 2 * CHAINS * self._width * self._items * self._count
+        return 2 * CHAINS * self._width * self._items * self.count
+
+    @property
+    def loaded(self) -> int:
+        """What `load` loads."""
+        return 4 * CHAINS * self._width * self._items * self.count
 
     def _whole(self, working_set: int) -> int:
         """The largest working set up to this one that is the same number of vectors for every work-item."""

@@ -1,6 +1,7 @@
 """What a pass must at least move and compute per pixel, counted from its equation and not from its kernel.
 
-Bytes: every plane a pass needs is read once and every plane it makes is written once; neighbours come from a cache.
+Bytes: every plane a pass needs is read once and every plane it makes is written once; neighbours come from a cache
+(`traffic`). Loads: every neighbour is loaded from there (`loads`).
 Operations: the equations of docs/algorithm.md in single precision. An addition, multiplication, comparison with its
 choice, absolute value, rounding, division and root count as one each, so a multiply-add counts as two. What is common
 to several taps counts once. In a steady state: what a pass does only where history is short or lost is left out.
@@ -11,26 +12,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from svgf_cl.bench.loads import Loads, loads
+from svgf_cl.bench.traffic import bytes_moved
 from svgf_cl.passes import Inputs, Pass
 from svgf_cl.settings import Settings
-
-FLOAT = 4  # bytes
-HALF = 2
-# Buffers of illumination and moments.
-LIGHT = ("demodulated", "accumulated", "history", "moments", "level")
-
-# Channels of the user's interleaved arrays.
-CHANNELS = {
-    "color": 3,
-    "direct": 3,
-    "indirect": 3,
-    "albedo": 3,
-    "emission": 3,
-    "normal": 3,
-    "depth": 1,
-    "id": 1,
-    "out": 3,
-}
 
 DOT = 5  # x x' + y y' + z z'; a luminance too
 EXP = {"precise": 14, "fast": 2}  # polynomial of degree 4, 2 a degree, and 6 to reduce the range; or a conversion
@@ -42,53 +27,20 @@ SAFE = 2  # finite? else another value
 
 @dataclass(frozen=True)
 class Cost:
-    """Bytes and floating-point operations; of a pixel, or of an image."""
+    """Bytes moved, bytes loaded and floating-point operations; of a pixel, or of an image."""
 
     bytes: float
+    loads: Loads
     flops: float
 
-    def __add__(self, other: Cost) -> Cost:
-        return Cost(self.bytes + other.bytes, self.flops + other.flops)
-
     def __mul__(self, pixels: int) -> Cost:
-        return Cost(self.bytes * pixels, self.flops * pixels)
+        return Cost(self.bytes * pixels, self.loads * pixels, self.flops * pixels)
 
 
 def cost(entry: Pass, inputs: Inputs, settings: Settings) -> Cost:
     """What a pass costs per pixel."""
-    moved = sum(bytes_used(entry, name, inputs, settings) for name in (*entry.reads, *entry.writes))
-    return Cost(moved, OPERATIONS[entry.kernel](inputs, settings))
-
-
-def bytes_used(entry: Pass, buffer: str, inputs: Inputs, settings: Settings) -> int:
-    """What a pass moves of a buffer or a user's array, per pixel; light and normals may be kept in 16 bits."""
-    planes = planes_used(entry, buffer, inputs)
-    kind = buffer.removeprefix("previous ").partition(" ")[0]
-    if kind in LIGHT:
-        return planes * (HALF if settings.half_history else FLOAT)
-    narrow = 3 if kind == "guide" and planes > 1 and settings.half_guides else 0
-    return planes * FLOAT - narrow * (FLOAT - HALF)
-
-
-def planes_used(entry: Pass, buffer: str, inputs: Inputs) -> int:
-    """How many of a buffer's planes, or of a user's array's channels, a pass needs."""
-    light = 3 * inputs.signals
-    if buffer == "motion":
-        return 2 if entry.kernel == "taa" else inputs.motion
-    parts = {
-        ("temporal", "history"): light,  # without the variance
-        ("temporal", "accumulated"): light,
-        ("atrous", "guide"): 4,  # normal and depth
-        ("variance", "guide"): 0,  # only where history is short
-        ("variance", "moments"): 1 + inputs.signals,  # length and variance
-        ("variance", "accumulated"): inputs.signals,
-        ("modulate", entry.reads[-1]): light,
-        ("taa", "guide"): 1,  # depth
-        ("taa", "moments"): 1,  # length
-    }
-    if (entry.kernel, buffer) in parts:
-        return parts[entry.kernel, buffer]
-    return CHANNELS.get(buffer) or inputs.planes(buffer)
+    moved = sum(bytes_moved(entry, name, inputs, settings) for name in (*entry.reads, *entry.writes))
+    return Cost(moved, loads(entry, inputs, settings), OPERATIONS[entry.kernel](inputs, settings))
 
 
 def demodulate(inputs: Inputs, settings: Settings) -> float:

@@ -87,7 +87,7 @@ def draw_roofline(axes: Axes, device: DeviceRecord, stages: Sequence[Result]) ->
         axes.loglog(intensity, 1e-9 * roof, style, color=COLORS[-1], label=f"{label}: {1e-9 * speed:.0f} GB/s")
     for index, stage in enumerate(stages):
         facts, best = stage.facts, min(stage.seconds)
-        label = f"{facts['stage']}: {100 * (stage.roofline or 0):.0f} %, {facts['binds']} binds"
+        label = f"{facts['stage']}: {100 * (stage.roofline or 0):.0f} %, bound by {facts['binds']}"
         axes.plot(
             facts["flops"] / facts["bytes"], 1e-9 * facts["flops"] / best, "o", color=COLORS[index % 7], label=label
         )

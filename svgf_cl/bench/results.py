@@ -35,8 +35,8 @@ class DeviceRecord:
         How the work is cut on it: the shipped choice, or what ``svgf-cl tune`` stored.
     rms, largest : float
         Error against the float64 oracle, relative to the picture's mean.
-    bandwidth : list of (int, float), bytes and bytes / s
-    flops : float, 1 / s
+    bandwidth, aligned_loads, offset_loads, flops
+        As in `Ceilings`.
     """
 
     selector: str
@@ -49,12 +49,14 @@ class DeviceRecord:
     rms: float
     largest: float
     bandwidth: list[tuple[int, float]]
+    aligned_loads: float
+    offset_loads: float
     flops: float
 
     @property
     def ceilings(self) -> Ceilings:
         """The limits measured in the same run."""
-        return Ceilings(self.bandwidth, self.flops)
+        return Ceilings(self.bandwidth, self.aligned_loads, self.offset_loads, self.flops)
 
     @property
     def label(self) -> str:
@@ -77,7 +79,7 @@ class Result:
     seconds : tuple of float
     facts : dict
         What was timed (stage, width, height, signals, iterations, cores) and, by the device's clock, how near it came
-        to its roofline (bytes, flops, bound in s, binds).
+        to its roofline (bytes moved, loaded, flops, bound in s, binds).
     """
 
     name: str

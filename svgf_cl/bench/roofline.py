@@ -8,27 +8,32 @@ from svgf_cl.bench.ceilings import Ceilings
 from svgf_cl.bench.cost import Cost
 
 # What can hold a pass up.
-BINDS = ("memory", "arithmetic")
+BINDS = ("memory", "loads", "arithmetic")
 
 
 @dataclass(frozen=True)
 class Bound:
-    """The least seconds a pass could take: the longer of moving its bytes and computing its operations."""
+    """The least seconds a pass could take: the longest of moving its bytes, loading its neighbours and computing."""
 
     memory: float
+    loads: float
     arithmetic: float
 
     @classmethod
     def of(cls, cost: Cost, ceilings: Ceilings) -> Bound:
         """The bound of a pass whose working set is the bytes it moves, for it touches each once."""
-        return cls(cost.bytes / ceilings.bandwidth_at(cost.bytes), cost.flops / ceilings.flops)
+        return cls(
+            memory=cost.bytes / ceilings.bandwidth_at(cost.bytes),
+            loads=cost.loads.aligned / ceilings.aligned_loads + cost.loads.offset / ceilings.offset_loads,
+            arithmetic=cost.flops / ceilings.flops,
+        )
 
     @property
     def seconds(self) -> float:
-        """The longer of both."""
-        return max(self.memory, self.arithmetic)
+        """The longest of them."""
+        return max(self.memory, self.loads, self.arithmetic)
 
     @property
     def binds(self) -> str:
-        """Which of both it is, out of `BINDS`."""
-        return BINDS[self.memory < self.arithmetic]
+        """Which of them it is, out of `BINDS`."""
+        return max(BINDS, key=lambda term: float(getattr(self, term)))

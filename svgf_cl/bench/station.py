@@ -12,7 +12,7 @@ import pyopencl as cl
 
 from svgf_cl import devices
 from svgf_cl.bench.cases import STARTS, USUAL_SHAPE, Case
-from svgf_cl.bench.ceilings import CeilingBench, Ceilings
+from svgf_cl.bench.ceilings import ALIGNED, OFFSET, CeilingBench, Ceilings
 from svgf_cl.bench.cores import confined
 from svgf_cl.bench.error import error_to_oracle
 from svgf_cl.bench.results import DeviceRecord, Result
@@ -49,6 +49,7 @@ class Station:
         self._queue = devices.create_queue(report.handle)
         self._bench = CeilingBench(self._queue)
         self._copies: dict[int, list[float]] = {size: [] for size in self._bench.working_sets}
+        self._loads: dict[int, list[float]] = {ALIGNED: [], OFFSET: []}
         self._multiplications: list[float] = []
 
     def set_up(self, case: Case) -> None:
@@ -75,6 +76,8 @@ class Station:
         for _ in range(CEILING_SAMPLES):
             for size, samples in self._copies.items():
                 samples.append(self._bench.copy(size))
+            for offset, samples in self._loads.items():
+                samples.append(self._bench.load(offset))
             self._multiplications.append(self._bench.multiply())
 
     def record(self) -> DeviceRecord:
@@ -92,6 +95,8 @@ class Station:
             rms=rms,
             largest=largest,
             bandwidth=[(size, size / min(samples)) for size, samples in self._copies.items()],
+            aligned_loads=self._bench.loaded / min(self._loads[ALIGNED]),
+            offset_loads=self._bench.loaded / min(self._loads[OFFSET]),
             flops=self._bench.operations / min(self._multiplications),
         )
 
@@ -99,6 +104,9 @@ class Station:
         """All that was sampled and asked for, ceilings too."""
         for size, seconds in self._copies.items():
             yield Result(f"ceiling.copy.{size}", self.report.selector, EVENT, tuple(seconds), {"bytes": size})
+        for offset, seconds in self._loads.items():
+            facts = {"bytes": self._bench.loaded}
+            yield Result(f"ceiling.load.{offset}", self.report.selector, EVENT, tuple(seconds), facts)
         facts = {"flops": self._bench.operations}
         yield Result("ceiling.multiply", self.report.selector, EVENT, tuple(self._multiplications), facts)
         usual = Case(USUAL_SHAPE, self.settings)
@@ -128,7 +136,7 @@ class Station:
 
 
 def bound_facts(case: Case, ceilings: Ceilings) -> dict[str, dict[str, Any]]:
-    """Per stage: bytes, operations, the least seconds and what binds; of several passes the sums."""
+    """Per stage: bytes moved and loaded, operations, the least seconds and what binds; of several passes the sums."""
     if case.cores is not None:  # the ceilings are those of all
         return {}
     costs = case.costs()
@@ -138,12 +146,14 @@ def bound_facts(case: Case, ceilings: Ceilings) -> dict[str, dict[str, Any]]:
     groups["frame"] = list(costs)
     found = {}
     for stage, names in groups.items():
-        seconds = {term: sum(bounds[n].seconds for n in names if bounds[n].binds == term) for term in BINDS}
+        seconds = {term: sum((bounds[n].seconds for n in names if bounds[n].binds == term), 0.0) for term in BINDS}
+        binds = max(BINDS, key=seconds.__getitem__)
         found[stage] = {
             "bytes": sum(costs[n].bytes for n in names),
+            "loaded": sum(costs[n].loads.bytes for n in names),
             "flops": sum(costs[n].flops for n in names),
             "bound": sum(seconds.values()),
-            "binds": BINDS[seconds["memory"] < seconds["arithmetic"]],
+            "binds": binds,
         }
     return found
 

@@ -8,6 +8,9 @@ from dataclasses import dataclass
 from svgf_cl.bench.results import DeviceRecord, Result, Run
 from svgf_cl.bench.rig import EVENT, HOST
 
+# Columns of what `limits` says.
+LIMITS = ("roofline %", "bound by", "bytes/px", "loaded/px", "flop/px")
+
 
 @dataclass(frozen=True)
 class Table:
@@ -43,6 +46,8 @@ def describe(device: DeviceRecord) -> dict[str, str]:
         "tuning": device.tuning,
         "copy in cache, GB/s": f"{1e-9 * max(speed for _, speed in device.bandwidth):.0f}",
         "copy out of cache, GB/s": f"{1e-9 * device.bandwidth[-1][1]:.0f}",
+        "load, aligned, GB/s": f"{1e-9 * device.aligned_loads:.0f}",
+        "load, offset by one, GB/s": f"{1e-9 * device.offset_loads:.0f}",
         "multiply-add, GFLOP/s": f"{1e-9 * device.flops:.0f}",
         "error to the float64 oracle, rms": f"{device.rms:.1e}",
         "error to the float64 oracle, largest": f"{device.largest:.1e}",
@@ -51,7 +56,7 @@ def describe(device: DeviceRecord) -> dict[str, str]:
 
 def stage_table(run: Run, device: DeviceRecord) -> Table:
     """Every benchmark on a device, event and host time side by side."""
-    columns = ("benchmark", "event ms", "host ms", "roofline %", "binds", "bytes/px", "flop/px", "rounds")
+    columns = ("benchmark", "event ms", "host ms", *LIMITS, "rounds")
     by_name: dict[str, dict[str, Result]] = {}
     for result in run.of(device):
         if "stage" in result.facts:
@@ -74,14 +79,14 @@ def spread(result: Result | None) -> str:
     return f"{milliseconds(result.median)} ±{50 * result.stats.iqr / result.median:.0f}%"
 
 
-def limits(result: Result | None) -> tuple[str, str, str, str]:
+def limits(result: Result | None) -> tuple[str, ...]:
     """How near a stage came to its roofline, what binds it, and what it costs per pixel."""
     if result is None or result.roofline is None:
-        return "-", "-", "-", "-"
+        return ("-",) * len(LIMITS)
     facts = result.facts
     pixels = facts["width"] * facts["height"]
     share = f"{100 * result.roofline:.0f}", facts["binds"]
-    return *share, f"{facts['bytes'] / pixels:.0f}", f"{facts['flops'] / pixels:.0f}"
+    return *share, *(f"{facts[what] / pixels:.0f}" for what in ("bytes", "loaded", "flops"))
 
 
 def memory_table(run: Run) -> Table:

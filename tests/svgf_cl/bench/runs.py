@@ -10,7 +10,7 @@ GIGA = 1e9
 
 
 def device(selector: str = "0:0", **other: Any) -> DeviceRecord:
-    """A CPU that copies 100 GB/s in cache and 10 GB/s out of it, and computes 400 GFLOP/s."""
+    """A CPU that copies 100 GB/s in cache and 10 GB/s out of it, loads 900 or 300, and computes 400 GFLOP/s."""
     facts = {
         "platform": "Alpha",
         "version": "OpenCL 3.0",
@@ -21,6 +21,8 @@ def device(selector: str = "0:0", **other: Any) -> DeviceRecord:
         "rms": 1.5e-7,
         "largest": 9e-7,
         "bandwidth": [(2**16, 100 * GIGA), (2**29, 10 * GIGA)],
+        "aligned_loads": 900 * GIGA,
+        "offset_loads": 300 * GIGA,
         "flops": 400 * GIGA,
     }
     return DeviceRecord(selector=selector, **(facts | other))
@@ -41,7 +43,7 @@ def run(*results: Result, devices: tuple[DeviceRecord, ...] = (), left_out: tupl
     return Run(devices or (device(),), results, left_out, machine, commit, "2026-11-22T08:00:00+00:00")
 
 
-BOUND = {"bytes": 1e7, "flops": 1e9, "bound": 4e-3, "binds": "arithmetic"}
+BOUND = {"bytes": 1e7, "loaded": 2e8, "flops": 1e9, "bound": 4e-3, "binds": "arithmetic"}
 
 
 def whole_run() -> Run:

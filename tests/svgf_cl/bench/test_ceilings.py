@@ -6,7 +6,7 @@ import numpy as np
 import pyopencl as cl
 import pytest
 
-from svgf_cl.bench.ceilings import CHAINS, CeilingBench, Ceilings
+from svgf_cl.bench.ceilings import ALIGNED, CHAINS, OFFSET, CeilingBench, Ceilings
 from svgf_cl.tuning import Tuning
 
 
@@ -17,7 +17,7 @@ def bench(request: pytest.FixtureRequest, queue: cl.CommandQueue, monkeypatch: p
     monkeypatch.setattr("svgf_cl.bench.ceilings.best_tuning", lambda _: tuning)
     monkeypatch.setattr("svgf_cl.bench.ceilings.WORKING_SETS", (2**16, 2**17))
     monkeypatch.setattr("svgf_cl.bench.ceilings.COPIED", 2**18)
-    monkeypatch.setattr("svgf_cl.bench.ceilings.MULTIPLIED", 1e-4)
+    monkeypatch.setattr("svgf_cl.bench.ceilings.COMPUTED", 1e-4)
     monkeypatch.setattr("svgf_cl.bench.ceilings.GPU_ITEMS", 256)
     return CeilingBench(queue)
 
@@ -45,8 +45,21 @@ def test_multiply_adds_are_computed(bench: CeilingBench, queue: cl.CommandQueue)
     assert bench.operations % (2 * CHAINS) == 0
 
 
+@pytest.mark.parametrize("offset", [ALIGNED, OFFSET])
+def test_loads_are_from_where_they_are_said_to_be(bench: CeilingBench, queue: cl.CommandQueue, offset: int) -> None:
+    """All that is loaded is added up; the first float is left out by loads that begin beside it."""
+    marked = np.ones(bench.source.size // 4, np.float32)
+    marked[0] = 3
+    cl.enqueue_copy(queue, bench.source, marked)
+    bench.count = 16
+    assert bench.load(offset) > 0
+    first = np.empty(1, np.float32)
+    cl.enqueue_copy(queue, first, bench.target)
+    assert first[0] == 16 * CHAINS + (2 if offset == ALIGNED else 0)
+
+
 def test_bandwidth_lies_between_the_measured_ones() -> None:
-    ceilings = Ceilings([(2**10, 80.0), (2**20, 20.0)], 1.0)
+    ceilings = Ceilings([(2**10, 80.0), (2**20, 20.0)], 1.0, 1.0, 1.0)
     assert ceilings.bandwidth_at(2**15) == pytest.approx(50)
     assert ceilings.bandwidth_at(1) == 80
     assert ceilings.bandwidth_at(2**40) == 20

@@ -8,6 +8,7 @@ import pytest
 
 from svgf_cl import Settings
 from svgf_cl.bench.cost import Cost, cost
+from svgf_cl.bench.loads import Loads
 from svgf_cl.passes import Inputs, pipeline
 
 INPUTS = Inputs(signals=1, motion=3, albedo=True, emission=False, id=True)
@@ -65,5 +66,5 @@ def test_16_bits_move_fewer_bytes() -> None:
     assert full["modulate"].bytes - half["modulate"].bytes == 2 * 3
 
 
-def test_costs_add_and_scale() -> None:
-    assert Cost(1, 2) + Cost(3, 4) * 10 == Cost(31, 42)
+def test_costs_scale() -> None:
+    assert Cost(1, Loads(2, 3), 4) * 10 == Cost(10, Loads(20, 30), 40)

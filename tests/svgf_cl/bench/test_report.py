@@ -99,14 +99,14 @@ def test_a_browser_shows_all_of_it(tmp_path: Path) -> None:
     ]
     assert len(seen["drawings"]) == 5
     assert all(width > 300 for width, _ in seen["drawings"])
-    assert "frame: 20 %, arithmetic binds" in seen["drawings"][1][1]
+    assert "frame: 20 %, bound by arithmetic" in seen["drawings"][1][1]
     assert seen["ink"] == seen["text"], "plots follow the page's colour, dark or light"
     assert seen["overflow"] <= 0, "wide tables scroll by themselves"
     by_first_cell = {row[0]: row for table in seen["tables"] for row in table}
     assert by_first_cell["device"] == ["device", "a <CPU>"]
     assert by_first_cell["svgf.temporal.1280x720"][-1] == "2.00", "the comparison comes last"
     assert by_first_cell["1"] == ["1", "<2>"]
-    assert [len(table) - 1 for table in seen["tables"]] == [10, 2, 15, 2, 2, 2, 2, 2, 1]
+    assert [len(table) - 1 for table in seen["tables"]] == [12, 2, 15, 2, 2, 2, 2, 2, 1]
 
 
 def test_a_run_of_one_stage_has_a_report_too(tmp_path: Path) -> None:

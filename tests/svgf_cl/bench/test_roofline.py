@@ -1,4 +1,4 @@
-"""The longer of both terms binds."""
+"""The longest term binds."""
 
 from __future__ import annotations
 
@@ -6,14 +6,20 @@ import pytest
 
 from svgf_cl.bench.ceilings import Ceilings
 from svgf_cl.bench.cost import Cost
+from svgf_cl.bench.loads import Loads
 from svgf_cl.bench.roofline import Bound
 
-CEILINGS = Ceilings([(1000, 100.0), (1000000, 10.0)], flops=50.0)
+CEILINGS = Ceilings([(1000, 100.0), (1000000, 10.0)], aligned_loads=200.0, offset_loads=20.0, flops=50.0)
 
 
 @pytest.mark.parametrize(
     ("cost", "seconds", "binds"),
-    [(Cost(1000, 100), 10.0, "memory"), (Cost(1000, 1000), 20.0, "arithmetic"), (Cost(1e6, 1000), 1e5, "memory")],
+    [
+        (Cost(1000, Loads(), 100), 10.0, "memory"),
+        (Cost(1000, Loads(), 1000), 20.0, "arithmetic"),
+        (Cost(1e6, Loads(), 1000), 1e5, "memory"),
+        (Cost(1000, Loads(2000, 400), 1000), 30.0, "loads"),
+    ],
 )
 def test_a_bound(cost: Cost, seconds: float, binds: str) -> None:
     bound = Bound.of(cost, CEILINGS)
