@@ -20,10 +20,15 @@ class Bound:
     arithmetic: float
 
     @classmethod
-    def of(cls, cost: Cost, ceilings: Ceilings) -> Bound:
-        """The bound of a pass whose working set is the bytes it moves, for it touches each once."""
+    def of(cls, cost: Cost, before: Cost, ceilings: Ceilings) -> Bound:
+        """The bound of a pass that comes after another, and reads what that one wrote.
+
+        Since then the device has touched, half of either on average, the rest of the pass before and the beginning of
+        this one; a copy touches its whole working set between two looks at a byte.
+        """
+        working_set = 0.5 * (before.bytes + cost.bytes)
         return cls(
-            memory=cost.bytes / ceilings.bandwidth_at(cost.bytes),
+            memory=cost.bytes / ceilings.bandwidth_at(working_set),
             loads=cost.loads.aligned / ceilings.aligned_loads + cost.loads.offset / ceilings.offset_loads,
             arithmetic=cost.flops / ceilings.flops,
         )

@@ -140,7 +140,8 @@ def bound_facts(case: Case, ceilings: Ceilings) -> dict[str, dict[str, Any]]:
     if case.cores is not None:  # the ceilings are those of all
         return {}
     costs = case.costs()
-    bounds = {name: Bound.of(each, ceilings) for name, each in costs.items()}
+    before = [*costs.values()][-1:] + [*costs.values()][:-1]  # the first pass comes after the last of another frame
+    bounds = {name: Bound.of(costs[name], other, ceilings) for name, other in zip(costs, before, strict=True)}
     groups = {name: [name] for name in costs}
     groups["atrous"] = [name for name in costs if name.startswith("atrous ")]
     groups["frame"] = list(costs)

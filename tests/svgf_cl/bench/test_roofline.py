@@ -22,5 +22,11 @@ CEILINGS = Ceilings([(1000, 100.0), (1000000, 10.0)], aligned_loads=200.0, offse
     ],
 )
 def test_a_bound(cost: Cost, seconds: float, binds: str) -> None:
-    bound = Bound.of(cost, CEILINGS)
+    bound = Bound.of(cost, cost, CEILINGS)
     assert (bound.seconds, bound.binds) == (pytest.approx(seconds), binds)
+
+
+def test_what_comes_before_is_in_the_way() -> None:
+    """A small pass after a large one finds the cache full of other things."""
+    alone, after = (Bound.of(Cost(1000, Loads(), 0), Cost(before, Loads(), 0), CEILINGS) for before in (1000, 2e6))
+    assert after.memory == pytest.approx(10 * alone.memory)
