@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from pathlib import Path
 
 from benchmarks.measurements import Quality, Result
 from benchmarks.presentation import MARK, Column, markdown, oracle_column, plot, quality_columns, table
-from svgf_cl.bench import report
-from svgf_cl.bench.results import Run
+from svgf_cl.bench.report import Section, inline_png
 from svgf_cl.bench.tables import Table
 from svgf_cl.files import written_whole
 
@@ -59,18 +59,24 @@ class Findings:
         columns = [oracle_column(), *(column for name in self.noise for column in quality_columns(name))]
         return markdown(self._table(TITLE, columns)) + "\n" + "".join(f"- {remark}\n" for remark in self.remarks)
 
+    @cached_property
+    def plot(self) -> bytes:
+        """A PNG."""
+        return plot(self.results, list(self.noise), f"{TITLE}, {self.about['size']}")
+
     def write(self, folder: Path) -> None:
         """Write ``results.json``, ``table.md`` and ``plot.png``."""
         with written_whole(folder / "results.json") as aside:
             aside.write_text(json.dumps(asdict(self), indent=1), encoding="utf-8")
         with written_whole(folder / "table.md") as aside:
             aside.write_text(self.page, encoding="utf-8")
-        plot(self.results, list(self.noise), f"{TITLE}, {self.about['size']}", folder / "plot.png")
+        with written_whole(folder / "plot.png") as aside:
+            aside.write_bytes(self.plot)
 
-    def add_to_report(self, run: Run, folder: Path, plot: bytes) -> None:
-        """Write the report of `run` into `folder` again, with tables and the PNG `plot` in it."""
-        section = report.Section(TITLE, report.inline_png(plot, TITLE), self.tables, self.remarks)
-        report.write(run, folder, more=[section])
+    @property
+    def section(self) -> Section:
+        """Of the benchmark's report."""
+        return Section(TITLE, inline_png(self.plot, TITLE), self.tables, self.remarks)
 
     def _table(self, title: str, columns: Sequence[Column]) -> Table:
         return table(title, self.results, columns)

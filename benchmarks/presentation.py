@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -14,7 +14,6 @@ from matplotlib.lines import Line2D
 from benchmarks.measurements import Result
 from benchmarks.pareto import pareto_front
 from svgf_cl.bench.tables import Table
-from svgf_cl.files import written_whole
 
 # Beside a figure: nothing measured is both faster and better.
 MARK = "•"
@@ -102,8 +101,8 @@ def markdown(table: Table) -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
 
 
-def plot(results: Sequence[Result], footages: Sequence[str], title: str, path: Path) -> None:
-    """Write a PNG: a row of panels for each footage, then the oracle's panel and the names."""
+def plot(results: Sequence[Result], footages: Sequence[str], title: str) -> bytes:
+    """A PNG: a row of panels for each footage, then the oracle's panel and the names."""
     shown = {name: [column for column in quality_columns(name) if column.plotted] for name in footages}
     width = 1 + max(len(columns) for columns in shown.values())
     figure = Figure(figsize=(4 * width, 4 * len(shown)), layout="constrained")
@@ -117,8 +116,9 @@ def plot(results: Sequence[Result], footages: Sequence[str], title: str, path: P
         axes.axis("off")
     names(grid[-1, -1], results)
     figure.suptitle(title)
-    with written_whole(path) as aside:
-        figure.savefig(aside, format="png", dpi=110)
+    drawing = io.BytesIO()
+    figure.savefig(drawing, format="png", dpi=110)
+    return drawing.getvalue()
 
 
 def panel(axes: Axes, column: Column, results: Sequence[Result]) -> None:

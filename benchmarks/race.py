@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from benchmarks.oidn import Filter
 from svgf_cl import Denoiser
+from svgf_cl.bench.cases import extent
+from svgf_cl.bench.results import Result
+from svgf_cl.bench.rig import EVENT, HOST
+from svgf_cl.frame import Shape
 from svgf_cl.room import PERIOD, room_frames
 
-WHOLE, DEVICE = "svgf_cl, whole call", "svgf_cl, device"
+# Seconds of each round, by denoiser and clock.
+Times = Mapping[tuple[str, str], Sequence[float]]
 
 
 @dataclass(frozen=True)
@@ -35,14 +41,14 @@ class Spread:
 
 
 def race(
-    den: Denoiser, filters: Mapping[str, Filter], rounds: int, advance: Callable[[], None]
-) -> dict[str, list[float]]:
+    denoisers: Mapping[str, Denoiser], filters: Mapping[str, Filter], rounds: int, advance: Callable[[], None]
+) -> Times:
     """Let every denoiser filter the same frame of the built-in room, one after the other, round after round.
 
     Parameters
     ----------
-    den : Denoiser
-        Its shape is that of the frames.
+    denoisers : mapping from name to Denoiser
+        All of one shape, that of the frames.
     filters : mapping from name to Filter
         Of the same shape.
     rounds : int, >= 1
@@ -51,26 +57,29 @@ def race(
 
     Returns
     -------
-    dict of list of float
-        Milliseconds of each round by name: `WHOLE`, a call of `Denoiser.denoise` from numpy arrays into one, with its
-        copies; `DEVICE`, the sum of that call's passes from OpenCL events; each filter, OIDN's execution alone.
+    mapping from (name, clock) to list of float, s
+        `HOST`: a call of `Denoiser.denoise` from numpy arrays into one, with its copies, or OIDN's execution alone;
+        `EVENT`: the sum of that call's passes from OpenCL events.
     """
-    inputs = list(room_frames(den.shape, PERIOD))
-    out = np.empty((*den.shape, 3), np.float32)
-    for frame in inputs:  # kernels are built, memory is touched, history is long enough
-        den.denoise(frame, out=out)
-    times: dict[str, list[float]] = {name: [] for name in (WHOLE, DEVICE, *filters)}
+    (shape,) = {den.shape for den in denoisers.values()}
+    inputs = list(room_frames(shape, PERIOD))
+    out = np.empty((*shape, 3), np.float32)
+    for den in denoisers.values():
+        for frame in inputs:  # kernels are built, memory is touched, history is long enough
+            den.denoise(frame, out=out)
+    times: dict[tuple[str, str], list[float]] = defaultdict(list)
     for index in range(rounds):
         frame = inputs[index % PERIOD]
-        begin = time.perf_counter()
-        den.denoise(frame, out=out)
-        times[WHOLE].append(1e3 * (time.perf_counter() - begin))
-        times[DEVICE].append(sum(den.profile().values()))
+        for name, den in denoisers.items():
+            begin = time.perf_counter()
+            den.denoise(frame, out=out)
+            times[name, HOST].append(time.perf_counter() - begin)
+            times[name, EVENT].append(1e-3 * sum(den.profile().values()))
         for name, rival in filters.items():
             rival.load(frame)
             begin = time.perf_counter()
             rival.execute()
-            times[name].append(1e3 * (time.perf_counter() - begin))
+            times[name, HOST].append(time.perf_counter() - begin)
             rival.check()
         advance()
     return times
@@ -79,3 +88,11 @@ def race(
 def ratio(slow: Sequence[float], fast: Sequence[float]) -> Spread:
     """How many times faster one denoiser was than the other in the same round."""
     return Spread.of(np.divide(slow, fast).tolist())
+
+
+def results(times: Times, device: str, shape: Shape) -> Iterator[Result]:
+    """The times as a benchmark's results; `device` is the selector of svgf_cl's, the race's size `shape`."""
+    for (name, clock), seconds in times.items():
+        words = ".".join(("race", *name.lower().split(), extent(shape)))
+        facts = {"race": name, "width": shape[1], "height": shape[0]}
+        yield Result(words, device, clock, tuple(seconds), facts)

@@ -18,6 +18,7 @@ How the metrics are defined: `svgf_cl.metrics`. The truth has noise of its own, 
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -25,12 +26,12 @@ from typing import Annotated, Any
 import typer
 
 from benchmarks.findings import TITLE, Findings
-from benchmarks.footage import FOOTAGE, PART
+from benchmarks.footage import FOOTAGE, PART, Footage
 from benchmarks.measurements import measure, steps
 from benchmarks.provenance import provenance
 from benchmarks.variants import VARIANTS
 from svgf_cl import devices
-from svgf_cl.bench.results import Run
+from svgf_cl.bench.cases import extent
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import parse_rgb, parse_size
 from svgf_cl.cli.render import CAMERA_HELP, SKY_HELP
@@ -44,10 +45,6 @@ def speed_against_error(
     output: Annotated[
         Path, typer.Option("-o", "--output", metavar="DIR", help="Gets results.json, table.md and plot.png.")
     ] = Path("out/speed-against-error"),
-    report: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="What 'svgf-cl bench -o' wrote: put table and plot into its report.html."),
-    ] = None,
     size: Annotated[str, typer.Option(metavar="WxH", help="Size of the frames.")] = "1280x720",
     rounds: Annotated[int, typer.Option(metavar="N", min=1, help="Turns of each variant, two timed frames each.")] = 20,
     scene: Annotated[
@@ -71,16 +68,20 @@ def speed_against_error(
     place["sky"] = parse_rgb(sky) if sky else None
     footages = [replace(footage, shape=shape, spp=spp, **place) for footage in FOOTAGE]
     folder = make_folder(output)
-    run = Run.read(report / "results.json") if report else None
-    about = provenance(devices.default_device()) | {"size": size, "truth": f"{scene}, {spp} spp"}
-    with progress_bar(TITLE.lower(), steps(VARIANTS, footages, rounds)) as advance:
-        findings = Findings(*measure(VARIANTS, footages, shape, rounds, advance), about)
+    findings = found(footages, rounds)
     findings.write(folder)
-    if run and report:
-        findings.add_to_report(run, report, (folder / "plot.png").read_bytes())
     for part in findings.tables:
         show(part.title, part.columns, part.rows)
     print("\n".join([*findings.remarks, f"{folder}: results.json, table.md, plot.png"]))
+
+
+def found(footages: Sequence[Footage], rounds: int) -> Findings:
+    """Measure every variant on the default device, on footages of one scene and size."""
+    film = footages[0]
+    about = {"size": extent(film.shape), "truth": f"{film.scene}, {film.spp} spp"}
+    with progress_bar(TITLE.lower(), steps(VARIANTS, footages, rounds)) as advance:
+        measured = measure(VARIANTS, footages, film.shape, rounds, advance)
+    return Findings(*measured, provenance(devices.default_device()) | about)
 
 
 def main() -> None:

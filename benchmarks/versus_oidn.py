@@ -2,8 +2,9 @@
 
 Speed: in every round each denoiser filters the same frame of the built-in room once, after a warm-up.
 
-- "svgf_cl, whole call": `Denoiser.denoise` from numpy arrays into a numpy array, all copies included.
-- "svgf_cl, device": the passes of that same call, from OpenCL events.
+- "svgf_cl ...", host clock: the whole call of `Denoiser.denoise` from numpy arrays into a numpy array, all copies
+  included; event clock: the passes of that same call, from OpenCL events. "5x5": the paper's taps; "default": the
+  default settings, or others.
 - "OIDN ...": ``oidnExecuteFilter`` alone, HDR, with albedo and normal, in place on images that were filled before.
 
 A ratio is that of two times of one round; what counts is its median over the rounds. Memory is what a denoiser holds
@@ -20,9 +21,9 @@ import json
 import os
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import pyopencl as cl
 import typer
@@ -30,10 +31,16 @@ import typer
 from benchmarks.footage import FOOTAGE, Footage
 from benchmarks.measurements import Quality, quality
 from benchmarks.oidn import QUALITIES, Filter
+from benchmarks.presentation import markdown
 from benchmarks.provenance import provenance
-from benchmarks.race import WHOLE, race
-from benchmarks.versus_tables import bar_table, error_table, ratio_table, time_table
-from svgf_cl import Denoiser
+from benchmarks.race import Times, race, results
+from benchmarks.versus_tables import error_table, ratio_table, time_table
+from svgf_cl import Denoiser, Settings, devices
+from svgf_cl.bench.bars import bar_table
+from svgf_cl.bench.cases import extent
+from svgf_cl.bench.report import Section
+from svgf_cl.bench.results import Result
+from svgf_cl.bench.tables import Table
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import SettingTexts, parse_settings, parse_size
 from svgf_cl.display import Linear
@@ -44,6 +51,57 @@ from svgf_cl.metrics import require_flip
 
 AREA, _ = FOOTAGE
 
+TITLE = "Against Open Image Denoise"
+
+# The settings that the bars were set for, and those of a user who sets nothing.
+PAPER = Settings(taps="5x5")
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What was found.
+
+    Parameters
+    ----------
+    times : Times
+    memory : mapping from str to int, bytes
+        By denoiser.
+    errors : mapping from str to Quality
+    about : dict of str to str
+        What was measured, on what, when.
+    results : tuple of Result
+        The times, as the benchmark keeps them.
+    """
+
+    times: Times
+    memory: Mapping[str, int]
+    errors: Mapping[str, Quality]
+    about: dict[str, str]
+    results: tuple[Result, ...]
+
+    @property
+    def tables(self) -> list[Table]:
+        """Times, ratios and errors."""
+        return [time_table(self.times, self.memory), ratio_table(self.times), error_table(self.errors)]
+
+    @property
+    def remarks(self) -> list[str]:
+        """What has to be known about the figures."""
+        return [f"{key}: {value}" for key, value in self.about.items()]
+
+    @property
+    def section(self) -> Section:
+        """Of the benchmark's report."""
+        return Section(TITLE, tables=self.tables, notes=self.remarks)
+
+    def write(self, path: Path) -> None:
+        """Write everything, all samples too, as JSON."""
+        record: dict[str, Any] = {"about": self.about, "bytes": self.memory}
+        record["seconds"] = {f"{name}, {clock}": seconds for (name, clock), seconds in self.times.items()}
+        record["error"] = {name: asdict(found) for name, found in self.errors.items()}
+        with written_whole(path) as aside:
+            aside.write_text(json.dumps(record, indent=1), encoding="utf-8")
+
 
 def versus_oidn(
     size: Annotated[str, typer.Option(metavar="WxH", help="Size of the frames.")] = "1280x720",
@@ -53,38 +111,44 @@ def versus_oidn(
     ] = False,
     set_: SettingTexts = [],  # noqa: B006  # never changed; typer wants the default spelled here
     json_: Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write all samples there, too.")] = None,
-    markdown: Annotated[bool, typer.Option("--markdown", help="Print tables as markdown.")] = False,
+    markdown_: Annotated[bool, typer.Option("--markdown", help="Print tables as markdown.")] = False,
 ) -> None:
     """Time svgf_cl and Open Image Denoise by turns, hold the ratios against the bars, and compare their errors.
 
-    PYOPENCL_CTX chooses svgf_cl's device. OIDN gets as many CPU threads as that device has, or all where it is no CPU.
+    svgf_cl takes part with 5x5 taps, which the bars were set for, and with its default settings, or those of --set.
+    PYOPENCL_CTX chooses its device. OIDN gets as many CPU threads as that device has, or all where it is no CPU.
     The truth takes a minute or two to render the first time, and is kept in the user's cache folder.
     """
+    found = compared(parse_size(size), parse_settings(set_), rounds, clean_aux=clean_aux)
+    device = devices.choose(devices.list_devices())
+    for table in [*found.tables, bar_table(found.results, {device.selector: device.platform})]:
+        print(f"{table.title}:\n\n{markdown(table)}") if markdown_ else show(table.title, table.columns, table.rows)
+    print("\n".join(found.remarks))
+    if json_:
+        found.write(json_)
+
+
+def compared(shape: Shape, settings: Settings, rounds: int, *, clean_aux: bool = False) -> Comparison:
+    """Race svgf_cl, as in the paper and with `settings`, against OIDN, and hold all against the truth."""
     require_flip()
-    shape, settings = parse_size(size), parse_settings(set_)
-    den = Denoiser(shape, settings=settings)
-    filters = oidn_filters(shape, den.queue.device, clean_aux)
+    denoisers = {f"svgf_cl {name}": Denoiser(shape, settings=s) for name, s in (("5x5", PAPER), ("default", settings))}
+    device = next(iter(denoisers.values())).queue.device
+    filters = oidn_filters(shape, device, clean_aux)
     with progress_bar("speed", rounds) as advance:
-        times = race(den, filters, rounds, advance)
-    memory = {WHOLE: den.nbytes} | {name: rival.nbytes for name, rival in filters.items()}
+        times = race(denoisers, filters, rounds, advance)
     footage = replace(AREA, shape=shape)
     with progress_bar("error", footage.parts_to_render + footage.frames) as advance:
-        errors = qualities(den, filters, footage, advance)
-    tables = (time_table(times, memory), ratio_table(times), bar_table(times), error_table(errors))
-    about = provenance(den.queue.device) | {
-        "oidn": filters["OIDN high"].description,
-        "size": size,
+        errors = qualities(denoisers, filters, footage, advance)
+    about = provenance(device) | {
+        "svgf_cl default": "as shipped" if settings == Settings() else str(settings),
+        "OIDN": filters["OIDN high"].description + (", clean aux" if clean_aux else ""),
+        "size": extent(shape),
         "rounds": str(rounds),
         "truth": f"{footage.spp} spp",
     }
-    for table in tables:
-        print(table.markdown()) if markdown else show(*table)
-    print("\n".join(f"{key}: {value}" for key, value in about.items()))
-    if json_:
-        record = about | {"settings": vars(settings), "clean aux": clean_aux, "milliseconds": times, "bytes": memory}
-        record |= {"bars": bar_table(times).rows, "error": {name: asdict(found) for name, found in errors.items()}}
-        with written_whole(json_) as aside:
-            aside.write_text(json.dumps(record, indent=1), encoding="utf-8")
+    memory = {name: each.nbytes for name, each in (denoisers | filters).items()}
+    selector = devices.choose(devices.list_devices()).selector
+    return Comparison(times, memory, errors, about, tuple(results(times, selector, shape)))
 
 
 def oidn_filters(shape: Shape, device: cl.Device, clean_aux: bool) -> dict[str, Filter]:
@@ -95,18 +159,19 @@ def oidn_filters(shape: Shape, device: cl.Device, clean_aux: bool) -> dict[str, 
 
 
 def qualities(
-    den: Denoiser, filters: Mapping[str, Filter], footage: Footage, advance: Callable[[], None]
+    denoisers: Mapping[str, Denoiser], filters: Mapping[str, Filter], footage: Footage, advance: Callable[[], None]
 ) -> dict[str, Quality]:
     """Hold what every denoiser makes of a footage, one signal, against the truth about it; the noise itself, too."""
     truth = [0.5 * (first + second) for first, second in footage.halves(advance)]
-    pictures: dict[str, list[Linear]] = {name: [] for name in ("noisy", "svgf_cl", *filters)}
-    den.reset()
+    pictures: dict[str, list[Linear]] = {name: [] for name in ("noisy", *denoisers, *filters)}
+    for den in denoisers.values():
+        den.reset()
     for number, split in enumerate(footage.noisy()):
         frame = replace(split, direct=None, indirect=None)
-        clean = den.denoise(frame)
+        clean = {name: den.denoise(frame) for name, den in denoisers.items()}
         if number in footage.judged:
             alone = {name: rival.denoise(frame) for name, rival in filters.items()}
-            for name, picture in {"noisy": frame.color, "svgf_cl": clean, **alone}.items():
+            for name, picture in {"noisy": frame.color, **clean, **alone}.items():
                 pictures[name].append(picture[slice(*footage.rows)])
         advance()
     return {name: quality(made, truth) for name, made in pictures.items()}

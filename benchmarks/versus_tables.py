@@ -2,53 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Mapping
 
-from benchmarks.bars import BARS
 from benchmarks.measurements import Quality
-from benchmarks.race import DEVICE, WHOLE, Spread, ratio
-
-Times = Mapping[str, Sequence[float]]
-
-
-class Table(NamedTuple):
-    """A title over columns of words."""
-
-    title: str
-    headings: Sequence[str]
-    rows: Sequence[Sequence[str]]
-
-    def markdown(self) -> str:
-        """As it may stand in docs/results.md."""
-        lines = [self.headings, ["---"] * len(self.headings), *self.rows]
-        return "\n".join([f"{self.title}:", "", *(f"| {' | '.join(line)} |" for line in lines), ""])
+from benchmarks.race import Spread, Times, ratio
+from svgf_cl.bench.rig import EVENT, HOST
+from svgf_cl.bench.tables import Table
 
 
 def time_table(times: Times, memory: Mapping[str, int]) -> Table:
-    """One row a denoiser: its times and its memory."""
+    """One row a denoiser and clock: its times; and its memory."""
     rows = []
-    for name, samples in times.items():
+    for (name, clock), samples in times.items():
         spread = Spread.of(samples)
-        milliseconds = [f"{value:.1f}" for value in (spread.median, spread.low, spread.high)]
-        rows.append([name, *milliseconds, f"{memory[name] / 2**20:.0f}" if name in memory else ""])
-    return Table("Time of a frame, and memory", ("denoiser", "median ms", "10 %", "90 %", "MiB"), rows)
+        milliseconds = [f"{1e3 * value:.1f}" for value in (spread.median, spread.low, spread.high)]
+        rows.append([name, clock, *milliseconds, f"{memory[name] / 1e6:.0f}" if clock == HOST else ""])
+    return Table("time of a frame, and memory", ("denoiser", "clock", "median ms", "10 %", "90 %", "MB"), rows)
 
 
 def ratio_table(times: Times) -> Table:
-    """One row a rival: how many times as long it took."""
-    rivals = [name for name in times if name not in (WHOLE, DEVICE)]
-    rows = [[name, *(f"{ratio(times[name], times[base]):.2f}" for base in (WHOLE, DEVICE))] for name in rivals]
-    return Table("Ratios of times of one round, median (10-90 %)", ("time of", f"/ {WHOLE}", f"/ {DEVICE}"), rows)
-
-
-def bar_table(times: Times) -> Table:
-    """One row a bar: the ratios that are held against it, and whether it holds."""
-    rows = []
-    for bar in BARS:
-        found = [ratio(times[bar.rival], times[base]) for base in (WHOLE, DEVICE)]
-        rows.append([str(bar), *(f"{spread.median:.2f} {bar.verdict(spread)}" for spread in found)])
-    return Table("Bars: so many times faster at least", ("", WHOLE, DEVICE), rows)
+    """One row a rival: how many times as long it took as svgf_cl, by either clock."""
+    own = {name for name, clock in times if clock == EVENT}
+    bases = [key for key in times if key[0] in own]
+    rivals = [key for key in times if key[0] not in own]
+    rows = [[rival[0], *(f"{ratio(times[rival], times[base]):.2f}" for base in bases)] for rival in rivals]
+    columns = ("time of", *(f"over {name}, {clock}" for name, clock in bases))
+    return Table("ratios of times of one round: median (10 % - 90 %)", columns, rows)
 
 
 def error_table(errors: Mapping[str, Quality]) -> Table:
@@ -57,4 +36,4 @@ def error_table(errors: Mapping[str, Quality]) -> Table:
         [name, f"{found.psnr:.2f}", f"{found.relmse:.4f}", f"{found.flip:.4f}", f"{found.temporal:.4f}"]
         for name, found in errors.items()
     ]
-    return Table("Error against the truth", ("", "PSNR dB ↑", "relMSE ↓", "FLIP ↓", "temporal ↓"), rows)
+    return Table("error against the truth", ("", "PSNR dB ↑", "relMSE ↓", "FLIP ↓", "temporal ↓"), rows)

@@ -32,8 +32,7 @@ def differences(old: Run, new: Run) -> list[str]:
 
 def medians(run: Run) -> dict[Key, float]:
     """Seconds by name, OpenCL implementation and clock."""
-    platforms = {device.selector: device.platform for device in run.devices}
-    return {(result.name, platforms[result.device], result.clock): result.median for result in run.results}
+    return {(result.name, run.platforms[result.device], result.clock): result.median for result in run.results}
 
 
 def device_differences(old: Run, new: Run) -> Iterator[str]:

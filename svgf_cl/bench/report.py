@@ -16,6 +16,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from svgf_cl.bench import plots, scaling
+from svgf_cl.bench.bars import bar_table
 from svgf_cl.bench.compare import comparison, differences
 from svgf_cl.bench.results import Run
 from svgf_cl.bench.tables import Table, device_table, memory_table, stage_table
@@ -85,6 +86,8 @@ def render(run: Run, parts: Sequence[Section]) -> str:
 
 def sections(run: Run, old: Run | None) -> Iterator[Section]:
     """The page from top to bottom."""
+    if (bars := bar_table(run.results, run.platforms)).rows:
+        yield Section("Bars", tables=[bars])
     yield Section("Devices", tables=[device_table(run), memory_table(run)])
     for title, draw in plots.plots(run).items():
         yield Section(title, inline_svg(draw, title))

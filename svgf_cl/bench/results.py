@@ -156,6 +156,11 @@ class Run:
         dirty = " with changes" if self.commit["dirty"] else ""
         return f"{self.commit['version']} (git {self.commit['id'][:12]}{dirty})"
 
+    @property
+    def platforms(self) -> dict[str, str]:
+        """OpenCL implementations by their devices' selectors."""
+        return {device.selector: device.platform for device in self.devices}
+
     def of(self, device: DeviceRecord, **facts: Any) -> Iterator[Result]:
         """The results on a device whose clock or facts are as given, in order."""
         for result in self.results:

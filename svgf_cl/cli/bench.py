@@ -47,7 +47,7 @@ def bench(
       svgf-cl bench --filter atrous --compare out/bench/results.json
     """
     try:
-        from svgf_cl.bench import compare, report, tables
+        from svgf_cl.bench import bars, compare, report, tables
         from svgf_cl.bench.cases import SHAPES
         from svgf_cl.bench.results import Run
         from svgf_cl.bench.suite import Suite
@@ -59,6 +59,8 @@ def bench(
     folder = make_folder(output) if output else None
     run = suite.run(progress_bar)
     shown = [tables.device_table(run), *(tables.stage_table(run, device) for device in run.devices)]
+    if (held := bars.bar_table(run.results, run.platforms)).rows:
+        shown.append(held)
     if earlier:
         shown.append(compare.comparison(earlier, run))
     for table in shown:

@@ -11,7 +11,6 @@ pytest.importorskip("matplotlib")
 from benchmarks.findings import TITLE, Findings
 from benchmarks.measurements import Quality, Result, Times
 from benchmarks.variants import Variant
-from tests.svgf_cl.bench.runs import whole_run
 
 FINDINGS = Findings(
     [
@@ -42,10 +41,9 @@ def test_files_are_written(tmp_path: Path) -> None:
     assert record["results"][1]["quality"]["area"]["psnr"] == 29
 
 
-def test_a_report_gets_a_section_with_plot_and_tables(tmp_path: Path) -> None:
-    FINDINGS.add_to_report(whole_run(), tmp_path, b"a picture")
-    page = (tmp_path / "report.html").read_text()
-    assert TITLE in page
-    assert "data:image/png;base64,YSBwaWN0dXJl" in page
-    assert "2 cheap" in page
-    assert "device: a device" in page
+def test_the_section_holds_plot_tables_and_remarks() -> None:
+    section = FINDINGS.section
+    assert section.title == TITLE
+    assert "data:image/png;base64,iVBOR" in section.figure
+    assert section.tables == FINDINGS.tables
+    assert "device: a device" in section.notes

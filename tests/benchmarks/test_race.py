@@ -6,8 +6,9 @@ import pyopencl as cl
 import pytest
 
 from benchmarks import race
-from benchmarks.race import DEVICE, WHOLE, Spread
+from benchmarks.race import Spread
 from svgf_cl import Denoiser, Frame
+from svgf_cl.bench.rig import EVENT, HOST
 from svgf_cl.room import PERIOD, room_frames
 
 SHAPE = (9, 16)
@@ -43,15 +44,16 @@ def test_all_take_turns_on_the_same_frame(queue: cl.CommandQueue) -> None:
     rounds = PERIOD + 1
     turns, ticks = [], []
     rivals = {name: Rival(name, turns) for name in "ab"}
-    times = race.race(Denoiser(SHAPE, queue=queue), rivals, rounds, lambda: ticks.append(None))
-    assert list(times) == [WHOLE, DEVICE, "a", "b"]
+    own = {name: Denoiser(SHAPE, queue=queue) for name in ("one", "two")}
+    times = race.race(own, rivals, rounds, lambda: ticks.append(None))
+    assert list(times) == [*((name, clock) for name in own for clock in (HOST, EVENT)), ("a", HOST), ("b", HOST)]
     assert {len(samples) for samples in times.values()} == {len(ticks)} == {rounds}
     light = [float(frame.color.sum()) for frame in room_frames(SHAPE, PERIOD)]
     assert turns == [(name, light[n % PERIOD]) for n in range(rounds) for name in "ab"]
 
 
 def test_a_time_covers_its_own_turn_only(queue: cl.CommandQueue, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whole milliseconds from a clock that only the denoisers move; the device's own times are not of this clock."""
+    """Milliseconds from a clock that only the denoisers move; the device's own times are not of this clock."""
     now = [0.0]
     monkeypatch.setattr(race.time, "perf_counter", lambda: now[0])
 
@@ -70,6 +72,13 @@ def test_a_time_covers_its_own_turn_only(queue: cl.CommandQueue, monkeypatch: py
         def check(self) -> None:
             now[0] += 10.0
 
-    times = race.race(Slow(SHAPE, queue=queue), {"a": SlowRival("a", [])}, 2, lambda: None)
-    assert times[WHOLE] == pytest.approx([1, 1])
-    assert times["a"] == pytest.approx([5, 5])
+    times = race.race({"slow": Slow(SHAPE, queue=queue)}, {"a": SlowRival("a", [])}, 2, lambda: None)
+    assert times["slow", HOST] == pytest.approx([1e-3, 1e-3])
+    assert times["a", HOST] == pytest.approx([5e-3, 5e-3])
+
+
+def test_times_become_results_of_the_benchmark() -> None:
+    (result,) = race.results({("OIDN high", HOST): [0.5, 0.6]}, "0:0", (720, 1280))
+    assert (result.name, result.device, result.clock) == ("race.oidn.high.1280x720", "0:0", HOST)
+    assert result.facts["race"] == "OIDN high"
+    assert result.median == 0.55

@@ -14,7 +14,6 @@ import typer
 
 from benchmarks import footage, speed_against_error
 from benchmarks.variants import VARIANTS
-from svgf_cl import SvgfError
 
 APP = typer.Typer()
 APP.command()(speed_against_error.speed_against_error)
@@ -33,12 +32,6 @@ def test_table_plot_and_json_are_written(tmp_path: Path, monkeypatch: pytest.Mon
     assert set(record["noise"]) == {"area", "centre"}
     assert "1 default" in run.output
     assert "noise of the truth, centre" in (tmp_path / "out" / "table.md").read_text()
-
-
-def test_a_report_is_looked_for_before_anything_is_measured(tmp_path: Path) -> None:
-    run = CliRunner().invoke(APP, ["-o", str(tmp_path), "--report", str(tmp_path / "none")])
-    assert isinstance(run.exception, SvgfError)
-    assert "results.json: cannot be read" in str(run.exception)
 
 
 def test_half_a_part_is_refused(tmp_path: Path) -> None:

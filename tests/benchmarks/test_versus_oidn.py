@@ -13,7 +13,6 @@ import pytest
 
 from benchmarks import footage, versus_oidn
 from benchmarks.footage import PART, Footage
-from benchmarks.race import DEVICE
 from svgf_cl import Denoiser, Frame
 from svgf_cl.room import room_frames
 
@@ -59,7 +58,7 @@ def test_errors_are_of_the_judged_frames(queue: cl.CommandQueue) -> None:
     den.denoise(used)  # other fields than the footage has, and a history that is not its own
     ticks: list[None] = []
     steps = film.parts_to_render + film.frames
-    found = versus_oidn.qualities(den, {"alone": alone}, film, lambda: ticks.append(None))
+    found = versus_oidn.qualities({"svgf_cl": den}, {"alone": alone}, film, lambda: ticks.append(None))
     assert found["alone"] == found["noisy"]
     assert found["svgf_cl"].psnr > found["noisy"].psnr
     assert alone.seen == len(film.judged)
@@ -74,10 +73,12 @@ def test_it_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[
     monkeypatch.setattr(versus_oidn, "AREA", FOOTAGE)
     options = ["--size", "80x45", "--rounds", "2", "--set", "iterations=2", "--markdown", "--json", target]
     assert run(monkeypatch, *options) == 0
-    assert "| bar: 15 x OIDN high | " in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "| bar: 5x5 faster than OIDN high | " in said
+    assert "| aim: default faster than OIDN fast | " in said
     record = json.loads(target.read_text())
-    assert record["settings"]["iterations"] == 2
-    assert {len(samples) for samples in record["milliseconds"].values()} == {2}
-    assert record["bytes"].keys() == record["milliseconds"].keys() - {DEVICE}
-    assert list(record["error"]) == ["noisy", "svgf_cl", "OIDN high", "OIDN balanced", "OIDN fast"]
-    assert record["error"]["svgf_cl"]["psnr"] > record["error"]["noisy"]["psnr"]
+    assert "iterations=2" in record["about"]["svgf_cl default"]
+    assert {len(samples) for samples in record["seconds"].values()} == {2}
+    assert list(record["error"]) == ["noisy", *record["bytes"]]
+    assert list(record["bytes"]) == ["svgf_cl 5x5", "svgf_cl default", "OIDN high", "OIDN balanced", "OIDN fast"]
+    assert record["error"]["svgf_cl 5x5"]["psnr"] > record["error"]["noisy"]["psnr"]

@@ -85,6 +85,7 @@ def test_a_browser_shows_all_of_it(tmp_path: Path) -> None:
     assert seen["fetched"] == []
     assert seen["images"] == [31]
     assert seen["headings"] == [
+        "Bars",
         "Devices",
         "A frame, stage by stage",
         "Roofline: Alpha",
@@ -106,7 +107,7 @@ def test_a_browser_shows_all_of_it(tmp_path: Path) -> None:
     assert by_first_cell["device"] == ["device", "a <CPU>"]
     assert by_first_cell["svgf.temporal.1280x720"][-1] == "2.00", "the comparison comes last"
     assert by_first_cell["1"] == ["1", "<2>"]
-    assert [len(table) - 1 for table in seen["tables"]] == [12, 2, 15, 2, 2, 2, 2, 2, 1]
+    assert [len(table) - 1 for table in seen["tables"]] == [6, 12, 2, 15, 2, 2, 2, 2, 2, 1]
 
 
 def test_a_run_of_one_stage_has_a_report_too(tmp_path: Path) -> None:

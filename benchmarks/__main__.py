@@ -1,0 +1,78 @@
+"""Everything that ``make bench`` measures, in one report: the suite, the race against OIDN, and speed against error."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from benchmarks import oidn, speed_against_error, versus_oidn
+from benchmarks.footage import FOOTAGE
+from svgf_cl import Settings
+from svgf_cl.bench import bars, report, tables
+from svgf_cl.bench.cases import USUAL_SHAPE
+from svgf_cl.bench.report import Section
+from svgf_cl.bench.results import Result, Run
+from svgf_cl.bench.suite import Suite
+from svgf_cl.cli.console import progress_bar, show
+from svgf_cl.errors import SvgfError
+from svgf_cl.files import make_folder
+from svgf_cl.metrics import require_flip
+
+ROUNDS = 20
+
+
+def everything(
+    output: Annotated[
+        Path,
+        typer.Option("-o", "--output", metavar="DIR", help="Gets report.html, summary.png, results.json and more."),
+    ] = Path("out/bench"),
+) -> None:
+    """Measure everything and write one report; a first one, without speed against error, is there earlier."""
+    require_flip()
+    folder = make_folder(output)
+    times, race = raced()  # first, for it tells OIDN's memory from what the process grows by
+    suite = Suite(re.compile("")).run(progress_bar)
+    run = replace(suite, results=(*suite.results, *times))
+    write(run, folder, [race])
+    findings = speed_against_error.found(FOOTAGE, ROUNDS)
+    findings.write(make_folder(folder / "speed-against-error"))
+    write(run, folder, [race, findings.section])
+    shown = [tables.stage_table(run, device) for device in run.devices]
+    for table in (*shown, *race.tables, *findings.tables, bars.bar_table(run.results, run.platforms)):
+        show(table.title, table.columns, table.rows)
+    print(f"{folder}: report.html, summary.png, results.json, speed-against-error")
+
+
+def raced() -> tuple[Sequence[Result], Section]:
+    """The race's times, and its section of the report; without OIDN, the reason why there is none."""
+    try:
+        oidn.require_oidn()
+    except SvgfError as error:
+        return (), Section(versus_oidn.TITLE, notes=[str(error)])
+    found = versus_oidn.compared(USUAL_SHAPE, Settings(), ROUNDS)
+    return found.results, found.section
+
+
+def write(run: Run, folder: Path, more: list[Section]) -> None:
+    """Write results and report."""
+    run.write(folder / "results.json")
+    report.write(run, folder, more=more)
+
+
+def main() -> None:
+    """Run the command; what goes wrong ends in one line."""
+    try:
+        typer.run(everything)
+    except SvgfError as error:
+        print(f"benchmarks: {error}", file=sys.stderr)
+        sys.exit(2)
+
+
+if __name__ == "__main__":
+    main()
