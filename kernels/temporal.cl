@@ -11,6 +11,8 @@
 
 #define MAX_LENGTH 1024.0f
 #define FAR 1e6f  // a motion out of every image, yet a safe integer
+#define NOWHERE (1 << 24)  // a position beyond every image
+#define SMOOTH 4           // pixels by which motion may differ within a vector that is read as a whole
 
 // What a tap of the previous frame is held against. The position p' is kept as a whole pixel and a fraction of motion:
 // added up in float32 a fraction would lose bits to the column's number.
@@ -62,9 +64,36 @@ INLINE Expected expect(const int4 size, int x, int y, __global const float *moti
     return e;
 }
 
-// Pixels around which taps are taken: one outside the image is moved to where all its taps lie in the halo.
-INLINE Places around(const int4 size, intv x, intv y) {
-    return places(at_lanes(size, clamp(x, -2, size.x + 1), clamp(y, -2, size.y + 1)));
+// Where the taps of a vector's pixels lie. Motion is smooth nearly everywhere: the footprints of neighbours fit side by side in
+// a box a little larger than one of them, which is read vector by vector; lanes whose footprint a tap is not in ignore it.
+// Where motion is not smooth each lane gathers from a footprint of its own.
+typedef struct {
+    Places at;          // top left of the box
+    intv x, y;          // top left of a lane's footprint in it
+    int columns, rows;  // of the box
+} Box;
+
+// The box of footprints `extent` pixels wide and high that begin at (left, top).
+INLINE Box box_of(const int4 size, int x, int y, intv left, intv top, intv hit, int extent) {
+    const intv used = hit & (left >= -extent) & (left <= size.x) & (top >= -extent) & (top <= size.y);
+    const intv dx = left - x - LANES, dy = top - y;
+    const intv most = (intv)(NOWHERE);
+    const int least_x = LEAST(select(most, dx, used)), spread_x = GREATEST(select(-most, dx, used)) - least_x;
+    const int least_y = LEAST(select(most, dy, used)), spread_y = GREATEST(select(-most, dy, used)) - least_y;
+    Box box;
+    box.at.adjacent = spread_x <= SMOOTH && spread_y <= SMOOTH;
+    box.columns = box.rows = extent;
+    box.x = box.y = (intv)(0);
+    if (box.at.adjacent) {
+        box.at.lanes = at_lanes(size, x + least_x + LANES, (intv)(y + least_y));
+        box.x = dx - least_x;
+        box.y = dy - least_y;
+        box.columns += spread_x;
+        box.rows += spread_y;
+    } else {
+        box.at.lanes = at_lanes(size, clamp(left, -extent, size.x), clamp(top, -extent, size.y));
+    }
+    return box;
 }
 
 INLINE Past read_past(const int4 size, Places at, __global const float *guide, __global const light_t *history,
@@ -131,6 +160,39 @@ INLINE History select_history(intv mask, History yes, History no) {
 }
 
 // `accumulated` may lie where `illumination` does: a pixel of either is touched by its own work-item alone.
+// Mean over the 2x2 footprint, with bilinear weights.
+INLINE History footprint(const int4 size, Expected e, Box box, float normal_threshold, __global const float *restrict guide,
+                         __global const light_t *restrict history, __global const light_t *restrict moments) {
+    History h = no_history();
+    for (int j = 0; j < box.rows; ++j) {
+        for (int i = 0; i < box.columns; ++i) {
+            const Past tap = read_past(size, beside(box.at, i + j * size.z), guide, history, moments);
+            const floatv dx = to_float(i - box.x) - e.fx, dy = to_float(j - box.y) - e.fy;
+            const floatv bilinear = max(1.0f - fabs(dx), (floatv)(0.0f)) * max(1.0f - fabs(dy), (floatv)(0.0f));
+            add_tap(&h, tap, where(consistent(e, tap, dx, dy, normal_threshold), bilinear, (floatv)(0.0f)));
+        }
+    }
+    return h;
+}
+
+// Mean over the nine pixels around the nearest one, which lies (nx, ny) off the footprint's top left.
+INLINE History surroundings(const int4 size, Expected e, floatv nx, floatv ny, Box box, float normal_threshold,
+                            __global const float *restrict guide, __global const light_t *restrict history,
+                            __global const light_t *restrict moments) {
+    History h = no_history();
+    for (int j = 0; j < box.rows; ++j) {
+        for (int i = 0; i < box.columns; ++i) {
+            const Past tap = read_past(size, beside(box.at, i + j * size.z), guide, history, moments);
+            const intv column = i - box.x, row = j - box.y;
+            const intv near = (column >= 0) & (column < 3) & (row >= 0) & (row < 3);
+            const floatv dx = to_float(column - 1) + nx - e.fx, dy = to_float(row - 1) + ny - e.fy;
+            const intv same = consistent(e, tap, dx, dy, normal_threshold);
+            add_tap(&h, tap, where(near & same, (floatv)(1.0f), (floatv)(0.0f)));
+        }
+    }
+    return h;
+}
+
 KERNEL temporal(const int4 size, const float alpha_color, const float alpha_moments, const float depth_threshold,
                 const float normal_threshold, __global const float *restrict motion,
                 __global const float *restrict guide, __global const light_t *illumination,
@@ -143,28 +205,13 @@ KERNEL temporal(const int4 size, const float alpha_color, const float alpha_mome
     const Expected e = expect(size, x, y, motion, guide, depth_threshold);
     const intv hit = load(guide + DEPTH * size.w + here) > 0.0f;
 
-    History h = no_history();
-    const Places corner = around(size, e.left, e.top);
-    UNROLLED_FOR(t, 4) {
-        const int dx = t & 1, dy = t >> 1;
-        const Past tap = read_past(size, beside(corner, dx + dy * size.z), previous_guide, history, previous_moments);
-        const floatv w = (dx ? e.fx : 1.0f - e.fx) * (dy ? e.fy : 1.0f - e.fy);
-        const intv same = consistent(e, tap, (float)dx - e.fx, (float)dy - e.fy, normal_threshold);
-        add_tap(&h, tap, where(same, w, (floatv)(0.0f)));
-    }
-
+    const Box corner = box_of(size, x, y, e.left, e.top, hit, 2);
+    History h = footprint(size, e, corner, normal_threshold, previous_guide, history, previous_moments);
     const intv lost = hit & (h.weight <= 0.01f);
-    if (any_lane(lost)) {  // thin geometry: look around
+    if (any_lane(lost)) {  // thin geometry
         const floatv nx = floor(e.fx + 0.5f), ny = floor(e.fy + 0.5f);
-        const Places nearest = around(size, e.left + to_int(nx), e.top + to_int(ny));
-        History nine = no_history();
-        for (int dy = -1; dy <= 1; ++dy) {
-            for (int dx = -1; dx <= 1; ++dx) {
-                const Past tap = read_past(size, beside(nearest, dx + dy * size.z), previous_guide, history, previous_moments);
-                const intv same = consistent(e, tap, nx + (float)dx - e.fx, ny + (float)dy - e.fy, normal_threshold);
-                add_tap(&nine, tap, where(same, (floatv)(1.0f), (floatv)(0.0f)));
-            }
-        }
+        const Box around = box_of(size, x, y, e.left + to_int(nx) - 1, e.top + to_int(ny) - 1, lost, 3);
+        const History nine = surroundings(size, e, nx, ny, around, normal_threshold, previous_guide, history, previous_moments);
         h = select_history(lost, nine, h);
     }
 
