@@ -21,7 +21,8 @@ INTRODUCTION = f"""# Accuracy
 Made by `make docs` (`python benchmarks/accuracy.py`); do not edit.
 
 Every kernel is given its actual float32 input and held against the same function of `svgf_cl/reference.py` in float64.
-An error is relative: `|got - expected| / (|expected| + {SCALE_SHARE:g} * mean |expected|)`. Where rounding tips a
+An error is relative: `|got - expected| / (|expected| + {SCALE_SHARE:g} * mean |expected|)`; of a
+colour the greatest channel counts as its size. Where rounding tips a
 decision (a tap just accepted or just refused) a pixel may differ by more than {DECISION:g}; such pixels are counted
 apart. "Pipeline" is the whole filter over a sequence, errors building up through the history, relative to the
 picture's mean.
@@ -30,8 +31,8 @@ picture's mean.
 indirect apart, TAA on. "Random": {FRAMES} frames of unrelated numbers in every field, with misses, ids and motion of
 several pixels.
 
-Why not zero: float32 rounds at 6e-8. `cosine^128` multiplies that by up to 128, an exponent of up to 80 by as much
-again, and the polynomial exponential adds 3e-7; the variance sums squares of differences.
+Why not zero: float32 rounds at 6e-8. 128 times a cosine multiplies that by 128, an exponent of up to 80 by as much
+again, and the polynomial exponential adds 4e-6; the variance sums squares of differences.
 """
 
 

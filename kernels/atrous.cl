@@ -90,7 +90,10 @@ KERNEL atrous(const int4 size, const int step, const float sigma_depth, const fl
         sum.weight[s] = (floatv)(h);
     }
 
+    // Unrolled, all rows at once take a tenth less time on PoCL; but a sixth more where there are many taps of few operations.
+#if !(FAST && RADIUS == 2)
 #pragma unroll
+#endif
     for (int dy = 0; dy <= RADIUS; ++dy) {
 #pragma unroll
         for (int dx = -RADIUS; dx <= RADIUS; ++dx) {

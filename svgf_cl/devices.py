@@ -23,7 +23,7 @@ VARIABLE = "PYOPENCL_CTX"
 
 # A CPU is as fast as its driver's compiler. The order is that of docs/extending.md, fastest first;
 # compute units and clock say nothing here, as all drivers report the same silicon (and Intel's a clock of 0).
-CPU_PLATFORMS = ("Portable Computing Language", intel_runtime.PLATFORM)
+CPU_PLATFORMS = (intel_runtime.PLATFORM, "Portable Computing Language")
 
 # A simulator claims to be of every type; it finds bugs and is thousands of times slower than anything else.
 SIMULATOR = "Oclgrind"

@@ -68,9 +68,9 @@ class Settings:
         in Sponza, where it leaves 7 % more flicker.
     precision : "precise" or "fast"
         Weights of the a-trous filter and the spatial variance: exponentials to 4e-6, or with straight lines between the
-        powers of two, up to 6 % larger. Fast takes a tenth less time (of 5x5 taps a fifth) and looks the same, to
-        0.07 dB; yet single pixels are off the exact filter by up to a tenth of the picture's mean. Precise, so that a
-        picture is the same to 1e-6 wherever it is made.
+        powers of two, up to 6 % larger. Fast takes a sixth less time and looks the same, to 0.07 dB; yet single pixels
+        are off the exact filter by up to a tenth of the picture's mean. Precise, so that a picture is the same to 1e-6
+        wherever it is made.
     half_guides : bool
         Keep normals as 16-bit whole numbers: 6 of the guide's 16 bytes less a pixel, an error of 2^-16. Off: no faster
         on a CPU, where the time saved on memory is spent on converting.

@@ -86,8 +86,8 @@ def cl_error(kind: type[cl.Error], code: int) -> cl.Error:
             FakePlatform("B", [gpu("faster", max_compute_units=10, max_clock_frequency=2001)]),
         ),
         (
-            FakePlatform(INTEL, [FakeDevice("slower", max_clock_frequency=0)]),
-            FakePlatform(POCL, [FakeDevice("faster")]),
+            FakePlatform(POCL, [FakeDevice("slower")]),
+            FakePlatform(INTEL, [FakeDevice("faster", max_clock_frequency=0)]),
         ),
         (FakePlatform("rusticl", [FakeDevice("slower")]), FakePlatform(POCL, [FakeDevice("faster")])),
         (
