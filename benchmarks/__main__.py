@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +11,7 @@ from typing import Annotated
 import typer
 
 from benchmarks import oidn, speed_against_error, versus_oidn
+from benchmarks.command import run
 from benchmarks.footage import FOOTAGE
 from svgf_cl import Settings
 from svgf_cl.bench import bars, report, tables
@@ -67,12 +67,8 @@ def write(run: Run, folder: Path, more: list[Section]) -> None:
 
 
 def main() -> None:
-    """Run the command; what goes wrong ends in one line."""
-    try:
-        typer.run(everything)
-    except SvgfError as error:
-        print(f"benchmarks: {error}", file=sys.stderr)
-        sys.exit(2)
+    """Run the command."""
+    run(everything, "benchmarks")
 
 
 if __name__ == "__main__":

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import subprocess
 from datetime import date
 
 import pyopencl as cl
 
-from svgf_cl import __version__
+from svgf_cl.bench.results import commit_info
 
 
 def provenance(device: cl.Device) -> dict[str, str]:
     """Device with its driver, version and git revision of svgf_cl, date."""
-    revision = subprocess.run(["git", "describe", "--always", "--dirty"], capture_output=True, text=True, check=False)
+    commit = commit_info()
+    dirty = "-dirty" if commit["dirty"] else ""
     return {
         "device": f"{device.name}, {device.platform.version}, driver {device.driver_version}",
-        "svgf_cl": f"{__version__}, git {revision.stdout.strip() or 'revision unknown'}",
+        "svgf_cl": f"{commit['version']}, git {commit['id'][:7]}{dirty}",
         "date": date.today().isoformat(),
     }

@@ -11,10 +11,9 @@ import numpy as np
 
 from benchmarks.oidn import Filter
 from svgf_cl import Denoiser
-from svgf_cl.bench.cases import extent
 from svgf_cl.bench.results import Result
 from svgf_cl.bench.rig import EVENT, HOST
-from svgf_cl.frame import Shape
+from svgf_cl.frame import Shape, extent
 from svgf_cl.room import PERIOD, room_frames
 
 # Seconds of each round, by denoiser and clock.

@@ -17,7 +17,6 @@ How the metrics are defined: `svgf_cl.metrics`. The truth has noise of its own, 
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -25,18 +24,18 @@ from typing import Annotated, Any
 
 import typer
 
+from benchmarks.command import run
 from benchmarks.findings import TITLE, Findings
 from benchmarks.footage import FOOTAGE, PART, Footage
 from benchmarks.measurements import measure, steps
 from benchmarks.provenance import provenance
 from benchmarks.variants import VARIANTS
 from svgf_cl import devices
-from svgf_cl.bench.cases import extent
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import parse_rgb, parse_size
 from svgf_cl.cli.render import CAMERA_HELP, SKY_HELP
-from svgf_cl.errors import SvgfError
 from svgf_cl.files import make_folder
+from svgf_cl.frame import extent
 from svgf_cl.metrics import require_flip
 from tracer import Camera
 
@@ -85,12 +84,8 @@ def found(footages: Sequence[Footage], rounds: int) -> Findings:
 
 
 def main() -> None:
-    """Run the command; wrong input ends in one line, as that of ``svgf-cl`` does."""
-    try:
-        typer.run(speed_against_error)
-    except SvgfError as error:
-        print(f"speed_against_error: {error}", file=sys.stderr)
-        sys.exit(2)
+    """Run the command."""
+    run(speed_against_error, "speed_against_error")
 
 
 if __name__ == "__main__":

@@ -19,7 +19,6 @@ from __future__ import annotations
 
 import json
 import os
-import sys
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -28,6 +27,7 @@ from typing import Annotated, Any
 import pyopencl as cl
 import typer
 
+from benchmarks.command import run
 from benchmarks.footage import FOOTAGE, Footage
 from benchmarks.measurements import Quality, quality
 from benchmarks.oidn import QUALITIES, Filter
@@ -37,16 +37,14 @@ from benchmarks.race import Times, race, results
 from benchmarks.versus_tables import error_table, ratio_table, time_table
 from svgf_cl import Denoiser, Settings, devices
 from svgf_cl.bench.bars import bar_table
-from svgf_cl.bench.cases import extent
 from svgf_cl.bench.report import Section
 from svgf_cl.bench.results import Result
 from svgf_cl.bench.tables import Table
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import SettingTexts, parse_settings, parse_size
 from svgf_cl.display import Linear
-from svgf_cl.errors import SvgfError
 from svgf_cl.files import written_whole
-from svgf_cl.frame import Shape
+from svgf_cl.frame import Shape, extent
 from svgf_cl.metrics import require_flip
 
 AREA, _ = FOOTAGE
@@ -178,12 +176,8 @@ def qualities(
 
 
 def main() -> None:
-    """Run the command; wrong input ends in one line, as that of ``svgf-cl`` does."""
-    try:
-        typer.run(versus_oidn)
-    except SvgfError as error:
-        print(f"versus_oidn: {error}", file=sys.stderr)
-        sys.exit(2)
+    """Run the command."""
+    run(versus_oidn, "versus_oidn")
 
 
 if __name__ == "__main__":

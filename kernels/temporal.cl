@@ -10,7 +10,7 @@
 // that nothing cancels for bright, steady pixels.
 
 #define MAX_LENGTH 1024.0f
-#define FAR 1e6f  // a motion out of every image, yet a safe integer
+#define FAR 1e6f           // a motion out of every image, yet a safe integer
 #define NOWHERE (1 << 24)  // a position beyond every image
 #define SMOOTH 4           // pixels by which motion may differ within a vector that is read as a whole
 
@@ -64,9 +64,9 @@ INLINE Expected expect(const int4 size, int x, int y, __global const float *moti
     return e;
 }
 
-// Where the taps of a vector's pixels lie. Motion is smooth nearly everywhere: the footprints of neighbours fit side by side in
-// a box a little larger than one of them, which is read vector by vector; lanes whose footprint a tap is not in ignore it.
-// Where motion is not smooth each lane gathers from a footprint of its own.
+// Where the taps of a vector's pixels lie. Motion is smooth nearly everywhere: the footprints of neighbours fit side by
+// side in a box a little larger than one of them, which is read vector by vector; lanes whose footprint a tap is not in
+// ignore it. Where motion is not smooth each lane gathers from a footprint of its own.
 typedef struct {
     Places at;          // top left of the box
     intv x, y;          // top left of a lane's footprint in it
@@ -118,7 +118,8 @@ INLINE intv consistent(Expected e, Past tap, floatv dx, floatv dy, float normal_
     const floatv expected = e.depth + e.gradient.x * dx + e.gradient.y * dy;
     floatv cosine = (floatv)(0.0f);
     UNROLLED_FOR(k, 3) cosine += e.normal[k] * tap.normal[k];
-    intv same = (tap.depth > 0.0f) & (fabs(tap.depth - expected) <= e.tolerance) & (cosine >= normal_threshold * (UNIT * UNIT));
+    intv same = (tap.depth > 0.0f) & (fabs(tap.depth - expected) <= e.tolerance);
+    same &= cosine >= normal_threshold * (UNIT * UNIT);
 #if HAS_ID
     same &= tap.id == e.id;
 #endif
@@ -159,7 +160,6 @@ INLINE History select_history(intv mask, History yes, History no) {
     return yes;
 }
 
-// `accumulated` may lie where `illumination` does: a pixel of either is touched by its own work-item alone.
 // Mean over the 2x2 footprint, with bilinear weights.
 INLINE History footprint(const int4 size, Expected e, Box box, float normal_threshold, __global const float *restrict guide,
                          __global const light_t *restrict history, __global const light_t *restrict moments) {
@@ -193,6 +193,7 @@ INLINE History surroundings(const int4 size, Expected e, floatv nx, floatv ny, B
     return h;
 }
 
+// `accumulated` may lie where `illumination` does: a pixel of either is touched by its own work-item alone.
 KERNEL temporal(const int4 size, const float alpha_color, const float alpha_moments, const float depth_threshold,
                 const float normal_threshold, __global const float *restrict motion,
                 __global const float *restrict guide, __global const light_t *illumination,
@@ -211,7 +212,8 @@ KERNEL temporal(const int4 size, const float alpha_color, const float alpha_mome
     if (any_lane(lost)) {  // thin geometry
         const floatv nx = floor(e.fx + 0.5f), ny = floor(e.fy + 0.5f);
         const Box around = box_of(size, x, y, e.left + to_int(nx) - 1, e.top + to_int(ny) - 1, lost, 3);
-        const History nine = surroundings(size, e, nx, ny, around, normal_threshold, previous_guide, history, previous_moments);
+        const History nine =
+            surroundings(size, e, nx, ny, around, normal_threshold, previous_guide, history, previous_moments);
         h = select_history(lost, nine, h);
     }
 

@@ -21,9 +21,11 @@ intel_runtime.register()
 # By pyopencl's own name, so that it means the same in every program.
 VARIABLE = "PYOPENCL_CTX"
 
+POCL = "Portable Computing Language"
+
 # A CPU is as fast as its driver's compiler. The order is that of docs/extending.md, fastest first;
 # compute units and clock say nothing here, as all drivers report the same silicon (and Intel's a clock of 0).
-CPU_PLATFORMS = (intel_runtime.PLATFORM, "Portable Computing Language")
+CPU_PLATFORMS = (intel_runtime.PLATFORM, POCL)
 
 # A simulator claims to be of every type; it finds bugs and is thousands of times slower than anything else.
 SIMULATOR = "Oclgrind"

@@ -105,3 +105,9 @@ def check_field(name: str, value: Any, shape: Shape) -> None:
     kinds, wanted = ("ui", "integers (uint32)") if name == "id" else ("f", "floating point (float32)")
     if np.dtype(value.dtype).kind not in kinds:
         raise FrameError(name, wanted, f"dtype {value.dtype}")
+
+
+def extent(shape: Shape) -> str:
+    """Write (height, width) as people do: 640x360."""
+    height, width = shape
+    return f"{width}x{height}"

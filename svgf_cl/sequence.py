@@ -17,7 +17,7 @@ import OpenImageIO as oiio  # noqa: N813  # its documentation calls it so
 
 from svgf_cl.errors import FrameError, SequenceError
 from svgf_cl.files import written_whole
-from svgf_cl.frame import REQUIRED, Frame
+from svgf_cl.frame import REQUIRED, Frame, extent
 
 Plane = npt.NDArray[np.float32]
 
@@ -207,12 +207,6 @@ def whole_numbers(path: Path, plane: Plane) -> npt.NDArray[np.uint32]:
 def absent(path: Path, names: Sequence[str], planes: Mapping[str, Plane]) -> SequenceError:
     """Make the error for channels that are not there; it lists those that are."""
     return SequenceError(f"{path}: expected channels {' '.join(names)}, found {' '.join(planes)}")
-
-
-def extent(size: tuple[int, int]) -> str:
-    """Write (height, width) as people do: 640x360."""
-    height, width = size
-    return f"{width}x{height}"
 
 
 def write_channels(path: Path, planes: Mapping[str, Plane]) -> None:

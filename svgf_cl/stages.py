@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from svgf_cl.passes import Inputs, Pass, level_buffer
+from svgf_cl.reference_taps import REC709
 from svgf_cl.settings import Settings
-
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # Rec. 709, of red, green and blue
 
 
 @dataclass(frozen=True)
@@ -54,7 +53,7 @@ class StageView:
         if self.root:
             images *= images
         if self.illumination:
-            images[..., 1] = (images[..., 1] - images[..., ::2] @ LUMINANCE[::2]) / LUMINANCE[1]
+            images[..., 1] = (images[..., 1] - images[..., ::2] @ REC709[::2]) / REC709[1]
         if self.channels == 1:
             images = images[..., 0]
         return images if self.signals else images[0]

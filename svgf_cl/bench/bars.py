@@ -12,11 +12,12 @@ from svgf_cl.bench.cases import USUAL_SHAPE
 from svgf_cl.bench.results import Result
 from svgf_cl.bench.rig import EVENT, HOST
 from svgf_cl.bench.tables import Table
+from svgf_cl.devices import POCL
+from svgf_cl.intel_runtime import PLATFORM as INTEL
 
 Results = Sequence[Result]
 
 USUAL = {"height": USUAL_SHAPE[0], "width": USUAL_SHAPE[1], "variant": ""}
-POCL, INTEL = "Portable Computing Language", "Intel(R) OpenCL"
 
 
 @dataclass(frozen=True)

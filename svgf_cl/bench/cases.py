@@ -14,7 +14,7 @@ import pyopencl as cl
 
 from svgf_cl.bench.cores import core_counts
 from svgf_cl.bench.cost import Cost, cost
-from svgf_cl.frame import Shape
+from svgf_cl.frame import Shape, extent
 from svgf_cl.passes import Inputs, Pass, pipeline
 from svgf_cl.settings import RANGES, Settings
 
@@ -75,11 +75,6 @@ class Case:
     def passes(self) -> tuple[Pass, ...]:
         """Its pass table."""
         return pipeline(self.inputs, self.settings)
-
-
-def extent(shape: Shape) -> str:
-    """``1280x720`` of (720, 1280)."""
-    return f"{shape[1]}x{shape[0]}"
 
 
 def cases(device: cl.Device, shapes: Sequence[Shape], settings: Settings) -> Iterator[Case]:

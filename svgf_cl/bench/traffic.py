@@ -2,26 +2,13 @@
 
 from __future__ import annotations
 
-from svgf_cl.passes import Inputs, Pass
+from svgf_cl.frame import CHANNELS
+from svgf_cl.passes import OUT, Inputs, Pass, kind_of
 from svgf_cl.settings import Settings
+from svgf_cl.storage import LIGHT, NORMALS
 
 FLOAT = 4  # bytes
 HALF = 2
-# Buffers of illumination and moments.
-LIGHT = ("demodulated", "accumulated", "history", "moments", "level")
-
-# Channels of the user's interleaved arrays.
-CHANNELS = {
-    "color": 3,
-    "direct": 3,
-    "indirect": 3,
-    "albedo": 3,
-    "emission": 3,
-    "normal": 3,
-    "depth": 1,
-    "id": 1,
-    "out": 3,
-}
 
 
 def bytes_moved(entry: Pass, buffer: str, inputs: Inputs, settings: Settings) -> int:
@@ -30,7 +17,7 @@ def bytes_moved(entry: Pass, buffer: str, inputs: Inputs, settings: Settings) ->
     kind = kind_of(buffer)
     if kind in LIGHT:
         return planes * light_bytes(settings)
-    narrow = 3 if kind == "guide" and planes > 1 else 0
+    narrow = NORMALS if kind == "guide" and planes > 1 else 0
     return (planes - narrow) * FLOAT + narrow * normal_bytes(settings)
 
 
@@ -42,11 +29,6 @@ def light_bytes(settings: Settings) -> int:
 def normal_bytes(settings: Settings) -> int:
     """Of a component of the guide's normals."""
     return HALF if settings.half_guides else FLOAT
-
-
-def kind_of(buffer: str) -> str:
-    """What a buffer holds: ``level 3`` is a "level", ``previous guide`` a "guide"."""
-    return buffer.removeprefix("previous ").partition(" ")[0]
 
 
 def planes_used(entry: Pass, buffer: str, inputs: Inputs) -> int:
@@ -67,4 +49,6 @@ def planes_used(entry: Pass, buffer: str, inputs: Inputs) -> int:
     }
     if (entry.kernel, buffer) in parts:
         return parts[entry.kernel, buffer]
-    return CHANNELS.get(buffer) or inputs.planes(buffer)
+    if buffer == OUT:
+        return 3
+    return max(1, *CHANNELS[buffer]) if buffer in CHANNELS else inputs.planes(buffer)

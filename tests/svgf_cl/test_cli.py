@@ -10,9 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl import Settings, __version__, devices, tuner, tuning
+from svgf_cl import __version__, devices, tuner, tuning
 from svgf_cl.cli import main
-from svgf_cl.cli.options import parse_settings, settings_help
 from svgf_cl.sequence import (
     CHANNEL_NAMES,
     read_channels,
@@ -353,19 +352,6 @@ def test_measuring_without_scikit_image_says_how_to_get_it(
     refused("pip install '.[metrics]'", "compare", rendered, rendered)
     refused("pip install '.[metrics]'", "demo", "-o", tmp_path / "demo")
     assert not (tmp_path / "demo").exists(), "refused before the long work, not after it"
-
-
-# Settings
-
-
-def test_settings_are_read_by_their_own_type() -> None:
-    texts = ["iterations=3", "sigma_depth=2", "taa=on", "alpha_color=0"]
-    assert parse_settings(texts) == Settings(iterations=3, sigma_depth=2.0, taa=True, alpha_color=0.0)
-    assert parse_settings([]) == Settings()
-
-
-def test_help_lists_every_setting() -> None:
-    assert all(f"{name}: " in settings_help() for name in vars(Settings()))
 
 
 # bench

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from svgf_cl.frame import CHANNELS, Frame, Shape
+from svgf_cl.frame import Frame, Shape
 from svgf_cl.reference import (
     Accumulated,
     Guides,
@@ -38,21 +38,15 @@ from svgf_cl.reference_taps import (
     smoothed,
 )
 from svgf_cl.settings import Settings
+from tests import frames
+from tests.frames import FACING
 
 SHAPE = (12, 14)
-FACING = (0.0, 0.0, 1.0)
 
 
 def wall(shape: Shape = SHAPE, **given: Any) -> Frame:
-    """Return a grey wall facing a resting camera, with any field replaced; numbers and triples fill the image."""
-    values = {"color": 0.5, "normal": FACING, "depth": 4.0, "motion": (0.0, 0.0, 0.0)} | given
-
-    def spread(name: str, value: Any) -> np.ndarray[Any, Any]:
-        value = np.asarray(value, np.uint32 if name == "id" else np.float32)
-        channels = value.shape[-1:] if name == "motion" else tuple(n for n in CHANNELS[name] if n)
-        return np.array(np.broadcast_to(value, (*shape, *channels)))
-
-    return Frame(**{name: spread(name, value) for name, value in values.items()})
+    """`frames.wall`, smaller: the oracle is slow."""
+    return frames.wall(shape, **given)
 
 
 def bumpy(rng: np.random.Generator, shape: Shape = SHAPE, misses: float = 0.1, **given: Any) -> Frame:
@@ -124,26 +118,6 @@ class TestDemodulate:
 
     def test_motion_is_clamped(self) -> None:
         assert_array_equal(guides_of(wall(motion=(1e30, -1e30))).motion[0, 0], (1e6, -1e6, 0))
-
-
-class TestGradient:
-    def test_plane(self) -> None:
-        y, x = np.indices(SHAPE)
-        gradient = depth_gradient(5 + 0.25 * x - 0.125 * y)
-        assert_array_equal(gradient, np.broadcast_to((0.25, -0.125), gradient.shape))
-
-    @pytest.mark.parametrize(
-        ("depth", "expected"),
-        [
-            ((1, 2, 9, 10), (1, 1, 1, 1)),  # refuses the edge between 2 and 9
-            ((1, 3, 1, 0), (2, -2, -2, 0)),  # a tie goes forward; no difference to a miss
-            ((0, 5, 0, 4), (0, 0, 0, 0)),  # alone
-        ],
-    )
-    def test_one_row(self, depth: tuple[float, ...], expected: tuple[float, ...]) -> None:
-        gradient = depth_gradient(np.array([depth], np.float64))
-        assert_array_equal(gradient[0, :, 0], expected)
-        assert_array_equal(gradient[..., 1], 0)
 
 
 class TestTemporal:
