@@ -29,6 +29,11 @@ class Camera:
         The direction that is up in the image; any length, not along the view.
     fov_y : float
         Vertical field of view in degrees, 0 < fov_y < 180.
+    aperture : float
+        Diameter of the lens in scene units, >= 0; at 0 everything is sharp. The plane through `look_at` is in focus.
+    shutter : float
+        How long the shutter stays open, as a share of the time from one frame to the next, 0..1; at 0 moving things
+        are sharp.
 
     Raises
     ------
@@ -40,6 +45,8 @@ class Camera:
     look_at: Vector
     up: Vector = (0.0, 1.0, 0.0)
     fov_y: float = 45.0
+    aperture: float = 0.0
+    shutter: float = 0.0
 
     def __post_init__(self) -> None:
         numbers = (*self.position, *self.look_at, *self.up, self.fov_y)
@@ -48,6 +55,8 @@ class Camera:
         view = np.subtract(self.look_at, self.position)
         if np.linalg.norm(np.cross(view, self.up)) <= 1e-9 * np.linalg.norm(view) * np.linalg.norm(self.up):
             raise SceneError(f"camera: expected a point to look at that is not along the up direction, got {self}")
+        if not (0.0 <= self.aperture < math.inf and 0.0 <= self.shutter <= 1.0):
+            raise SceneError(f"camera: expected an aperture >= 0 and a shutter in 0..1, got {self}")
 
     @classmethod
     def parse(cls, text: str) -> Camera:
@@ -135,16 +144,20 @@ class CameraPath:
         """The camera at time `t`, 0 (first keyframe) to 1 (last)."""
         if len(self.keyframes) == 1:
             return self.keyframes[0]
-        keys = np.array([(*key.position, *key.look_at, *key.up, key.fov_y) for key in self.keyframes])
+        keys = np.array([(*k.position, *k.look_at, *k.up, k.fov_y, k.aperture, k.shutter) for k in self.keyframes])
         segment, s = divmod(min(max(t, 0.0), 1.0) * (len(keys) - 1), 1.0)
         if segment == len(keys) - 1:
             segment, s = segment - 1, 1.0
         # One more keyframe at either end, in line with the last two, lets the spline reach the ends.
         padded = np.concatenate([[2 * keys[0] - keys[1]], keys, [2 * keys[-1] - keys[-2]]])
         values = _catmull_rom(padded[int(segment) : int(segment) + 4], s)
-        return Camera(vector(values[0:3]), vector(values[3:6]), vector(values[6:9]), float(values[9]))
+        # The spline may swing a little beyond its keyframes.
+        aperture, shutter = max(float(values[10]), 0.0), min(max(float(values[11]), 0.0), 1.0)
+        return Camera(
+            vector(values[0:3]), vector(values[3:6]), vector(values[6:9]), float(values[9]), aperture, shutter
+        )
 
-    def at_frame(self, number: int, frames: int) -> Camera:
+    def at_frame(self, number: float, frames: int) -> Camera:
         """The camera of frame `number`, from 0, in a sequence of so many that covers the whole path."""
         return self.at(number / max(frames - 1, 1))
 

@@ -11,28 +11,32 @@ from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
 from .materials import Material
+from .motion import Motion
 from .vectors import Float32, Float64, dot, normalise
 
 
 @dataclass(frozen=True, eq=False)
 class Instance:
-    """One object of the scene: triangles in world space and their material.
+    """One object of the scene: triangles and their material.
 
     Parameters
     ----------
     corners : (T, 3, 3) float
-        Triangle, corner, (x, y, z); counter-clockwise seen from the front.
+        Triangle, corner, (x, y, z) in world space; counter-clockwise seen from the front.
     material : Material
     normals : (T, 3, 3) float, optional
         Unit shading normals at the corners; the triangles are flat where absent.
     uv : (T, 3, 2) float, optional
         Texture coordinates, v up; 0 where absent.
+    motion : Motion, optional
+        Carries corners and normals, which are then in the object's own space, into the world.
     """
 
     corners: NDArray[np.floating]
     material: Material
     normals: NDArray[np.floating] | None = None
     uv: NDArray[np.floating] | None = None
+    motion: Motion | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,13 +3,95 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from .errors import SceneError
 from .geometry import Triangles
-from .materials import Material, MaterialTable
+from .materials import Colour, Material, MaterialTable
+from .motion import Motion
 from .sampling import triangle_coordinates
 from .vectors import LUMINANCE, Float32, normalise
+
+
+@dataclass(frozen=True, eq=False)
+class Sun:
+    """A disc of light at infinity, or a direction without extent (glTF's directional light).
+
+    Parameters
+    ----------
+    direction_to_light : (x, y, z)
+        From the scene towards the middle of the disc; any length.
+    irradiance : (r, g, b)
+        On a plane that faces it, linear, >= 0.
+    angular_radius : float
+        Half the angle under which it is seen, in degrees, 0 <= angular_radius < 90. At 0 it is seen neither by the
+        camera nor in a mirror.
+
+    Raises
+    ------
+    SceneError
+        A number is not finite or out of its range.
+    """
+
+    direction_to_light: Colour
+    irradiance: Colour
+    angular_radius: float = 0.25
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.direction_to_light).all() and np.any(self.direction_to_light)):
+            raise SceneError(f"sun: expected a direction of a length above 0, got {self.direction_to_light}")
+        if not (np.isfinite(self.irradiance).all() and min(self.irradiance) >= 0.0):
+            raise SceneError(f"sun: expected an irradiance >= 0, got {self.irradiance}")
+        if not 0.0 <= self.angular_radius < 90.0:
+            raise SceneError(f"sun: expected an angular radius in degrees in [0, 90), got {self.angular_radius}")
+
+
+@dataclass(frozen=True, eq=False)
+class PointLight:
+    """A light without extent, alike in all directions or within a cone (glTF's point and spot lights).
+
+    Parameters
+    ----------
+    position : (x, y, z)
+    intensity : (r, g, b)
+        Power per solid angle, linear, >= 0: irradiance at distance 1.
+    direction : (x, y, z)
+        The cone's axis, away from the light; any length.
+    inner_angle, outer_angle : float
+        Degrees from the axis where the light begins to fade, and where it has gone; 180 without a cone. Between them
+        it falls as KHR_lights_punctual says.
+    reach : float
+        Distance at which its light has faded to nothing (glTF's range).
+    motion : Motion, optional
+        Carries position and direction.
+
+    Raises
+    ------
+    SceneError
+        A number is not finite or out of its range.
+    """
+
+    position: Colour
+    intensity: Colour
+    direction: Colour = (0.0, 0.0, -1.0)
+    inner_angle: float = 180.0
+    outer_angle: float = 180.0
+    reach: float = np.inf
+    motion: Motion | None = None
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite([*self.position, *self.direction]).all() and np.any(self.direction)):
+            raise SceneError(f"light: expected finite position and direction, got {self.position}, {self.direction}")
+        if not (np.isfinite(self.intensity).all() and min(self.intensity) >= 0.0):
+            raise SceneError(f"light: expected an intensity >= 0, got {self.intensity}")
+        if not 0.0 <= self.inner_angle <= self.outer_angle <= 180.0:
+            raise SceneError(
+                f"light: expected 0 <= inner <= outer angle <= 180 degrees, got {self.inner_angle}, {self.outer_angle}"
+            )
+        if not self.reach > 0.0:
+            raise SceneError(f"light: expected a reach above 0, got {self.reach}")
 
 
 class AreaLights:

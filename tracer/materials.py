@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import SceneError
+from .motion import Track
 from .textures import LINEAR, Image, Textures
 from .vectors import Float32
 
@@ -17,32 +18,60 @@ Colour = tuple[float, float, float]
 
 @dataclass(frozen=True, eq=False)
 class Material:
-    """A Lambertian surface, the same on both sides, that may emit light from its front.
+    """A surface, the same on both sides: glTF's metallic-roughness model, or smooth glass, that may emit light.
 
     Parameters
     ----------
     base_colour : (r, g, b)
-        Linear reflectance, 0..1.
+        Linear, 0..1: what a dielectric reflects diffusely, a metal reflects at normal incidence, or glass lets through.
     emission : (r, g, b)
         Linear radiance, >= 0.
-    base_texture, emission_texture : (h, w, 3) uint8, optional
-        sRGB images that multiply the two.
+    base_texture : (h, w, 3) or (h, w, 4) uint8, optional
+        sRGB image that multiplies `base_colour`; its fourth channel is the opacity that `alpha_cutoff` tests.
+    emission_texture : (h, w, 3) uint8, optional
+        sRGB image that multiplies `emission`.
+    metallic : float
+        0 (dielectric) to 1 (metal).
+    roughness : float
+        Perceptual roughness, 0 (mirror) to 1: the GGX width is its square.
+    ior : float
+        Refractive index of a dielectric, >= 1. At 1 nothing is reflected at its coat: a Lambertian surface.
+    transmissive : bool
+        Smooth glass: light is reflected or refracted at it, and never scattered.
+    alpha_cutoff : float, optional
+        Rays pass through where the opacity is below; every point is solid where absent.
+    two_sided : bool
+        Emit from the back too.
+    brightness : Track of (factor,), optional
+        Factor of `emission` over time: a lamp that is dimmed or switched.
 
     Raises
     ------
     SceneError
-        A colour is not finite or below 0.
+        A number is not finite or out of its range.
     """
 
     base_colour: Colour = (0.8, 0.8, 0.8)
     emission: Colour = (0.0, 0.0, 0.0)
     base_texture: Image | None = None
     emission_texture: Image | None = None
+    metallic: float = 0.0
+    roughness: float = 1.0
+    ior: float = 1.0
+    transmissive: bool = False
+    alpha_cutoff: float | None = None
+    two_sided: bool = False
+    brightness: Track | None = None
 
     def __post_init__(self) -> None:
         for name, colour in (("colour", self.base_colour), ("emission", self.emission)):
             if not (np.isfinite(colour).all() and min(colour) >= 0.0):
                 raise SceneError(f"material: expected a finite {name} >= 0, got {colour}")
+        for name, value in (("metallic", self.metallic), ("roughness", self.roughness)):
+            if not 0.0 <= value <= 1.0:
+                raise SceneError(f"material: expected {name} in 0..1, got {value}")
+        if not 1.0 <= self.ior < np.inf:
+            raise SceneError(f"material: expected a finite refractive index >= 1, got {self.ior}")
 
     def mean_emission(self) -> NDArray[np.float64]:
         """Radiance (3,) averaged over the texture."""

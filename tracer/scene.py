@@ -9,8 +9,9 @@ import numpy as np
 from .camera import Camera, CameraPath, vector
 from .errors import SceneError
 from .geometry import Instance, Triangles
-from .lights import AreaLights
+from .lights import AreaLights, PointLight, Sun
 from .materials import Colour, Material, MaterialTable
+from .sky import Environment
 from .vectors import Float32
 
 
@@ -21,7 +22,9 @@ class Scene:
     ----------
     instances : sequence of Instance
         The objects; their ids in images count from 1 in this order.
-    sky : (r, g, b), optional
+    lights : sequence of Sun or PointLight, optional
+        Lights that are no triangles.
+    sky : (r, g, b) or Environment, optional
         Radiance that comes from everywhere outside the scene, linear, >= 0; none where absent.
     camera_path : CameraPath, optional
         The default view; a still camera that frames everything where absent.
@@ -33,7 +36,12 @@ class Scene:
     """
 
     def __init__(
-        self, instances: Sequence[Instance], *, sky: Colour | None = None, camera_path: CameraPath | None = None
+        self,
+        instances: Sequence[Instance],
+        *,
+        lights: Sequence[Sun | PointLight] = (),
+        sky: Colour | Environment | None = None,
+        camera_path: CameraPath | None = None,
     ) -> None:
         instances = [instance for instance in instances if len(instance.corners)]
         if not instances:
