@@ -68,7 +68,7 @@ def albedo(r: Reflection, cos_o: float) -> Vec3:
 
 @compiled
 def specular_share(r: Reflection, cos_o: float) -> float:
-    """The probability with which to sample the specular lobe: its share of the albedo, 0.1 to 0.9 beside another lobe."""
+    """The probability with which to sample the specular lobe: its share of the albedo, 0.1..0.9 if both exist."""
     if is_lambertian(r):
         return 0.0
     if luminance(r.diffuse) <= 0.0:
