@@ -11,7 +11,7 @@ from svgf_cl import Frame, Settings, devices
 from svgf_cl.accuracy import DECISION, SCALE_SHARE, Deviation, deviations
 from svgf_cl.bench import error_to_oracle
 from svgf_cl.files import written_whole
-from tracer import builtin_scene, render_sequence
+from tracer import Shot, builtin_scene, render_sequence
 
 SHAPE = (108, 192)
 FRAMES = 6
@@ -73,8 +73,7 @@ def section(report: devices.DeviceReport) -> str:
     assert report.handle is not None
     queue = devices.create_queue(report.handle)
     settings = Settings(taa=True)
-    scene = builtin_scene("cornell")
-    traced = render_sequence(scene, scene.camera_path, size=SHAPE, frames=FRAMES)
+    traced = render_sequence(Shot(builtin_scene("cornell"), SHAPE, FRAMES))
     results = {
         "traced": deviations(traced, settings, queue),
         "random": deviations(random_frames(SHAPE, FRAMES), settings, queue),

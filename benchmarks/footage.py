@@ -82,7 +82,7 @@ class Footage:
 
     def noisy(self) -> Iterator[Frame]:
         """The frames to denoise."""
-        return tracer.render_sequence(self._world, self._path, self.shape, self.frames, jitter=self.jitter)
+        return tracer.render_sequence(self._shot, jitter=self.jitter)
 
     def halves(self, advance: Callable[[], None]) -> list[tuple[Linear, Linear]]:
         """Two independent halves of the truth of each judged frame, rendered unless kept from an earlier run."""
@@ -98,12 +98,9 @@ class Footage:
         return cache_folder() / "references" / digest.hexdigest()[:16]
 
     @cached_property
-    def _world(self) -> tracer.Scene:
-        return open_scene(self.scene, self.sky)
-
-    @cached_property
-    def _path(self) -> tracer.CameraPath:
-        return tracer.CameraPath.through(self.cameras) if self.cameras else self._world.camera_path
+    def _shot(self) -> tracer.Shot:
+        path = tracer.CameraPath.through(self.cameras) if self.cameras else None
+        return tracer.Shot(open_scene(self.scene, self.sky), self.shape, self.frames, path)
 
     def _file(self, number: int, half: int) -> Path:
         return self.folder / f"frame.{number:04d}.half{half}.exr"
@@ -112,12 +109,11 @@ class Footage:
         path = self._file(number, half)
         if not path.exists():
             make_folder(self.folder)
-            camera = self._path.at_frame(number, self.frames)
             seeds = range(half, self.spp // PART, 2)
             total: Linear = np.zeros(())
             for seed in seeds:
                 total = total + tracer.render_reference(
-                    self._world, camera, self.shape, spp=PART, seed=seed, jitter=self.jitter, rows=self.rows
+                    self._shot, number, spp=PART, seed=seed, jitter=self.jitter, rows=self.rows
                 )
                 advance()
             write_picture(path, total / len(seeds))

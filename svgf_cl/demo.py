@@ -57,9 +57,9 @@ class Demo:
     reference_spp: int
 
     @cached_property
-    def scene(self) -> tracer.Scene:
-        """The built-in scene."""
-        return tracer.builtin_scene()
+    def shot(self) -> tracer.Shot:
+        """The built-in scene, seen along its own camera path."""
+        return tracer.Shot(tracer.builtin_scene(), self.shape, self.frames)
 
     @property
     def compared(self) -> list[int]:
@@ -87,8 +87,7 @@ class Demo:
         """Render, denoise and write one frame after the other; yield the milliseconds of each pass."""
         for kind in ("noisy", "filtered", "denoised"):
             make_folder(self.folder / kind)
-        noisy = tracer.render_sequence(self.scene, self.scene.camera_path, self.shape, self.frames)
-        for number, frame in enumerate(noisy):
+        for number, frame in enumerate(tracer.render_sequence(self.shot)):
             write_frame(self.path("noisy", number), frame)
             write_picture(self.path("denoised", number), denoiser.denoise(frame))
             write_picture(self.path("filtered", number), denoiser.stage("modulated"))
@@ -98,10 +97,7 @@ class Demo:
         """Render the references of the compared frames; `advance` is called after each sample per pixel."""
         make_folder(self.folder / "reference")
         for number in self.compared:
-            camera = self.scene.camera_path.at_frame(number, self.frames)
-            picture = tracer.render_reference(
-                self.scene, camera, self.shape, spp=self.reference_spp, progress=lambda *_: advance()
-            )
+            picture = tracer.render_reference(self.shot, number, spp=self.reference_spp, progress=lambda *_: advance())
             write_picture(self.path("reference", number), picture)
 
     def measure(self, kind: str) -> dict[int, Metrics]:

@@ -22,6 +22,10 @@ CHANNELS: dict[str, tuple[int, ...]] = {
     "emission": (3,),
     "direct": (3,),
     "indirect": (3,),
+    "diffuse": (3,),
+    "specular": (3,),
+    "roughness": (0,),
+    "hit_distance": (2,),
 }
 REQUIRED = ("normal", "depth", "motion")
 
@@ -52,6 +56,14 @@ class Frame:
     direct, indirect : (H, W, 3) float32, optional
         Reflected radiance split in two signals that are filtered apart; both or neither.
         ``color = direct + indirect + emission``, and `color` is not read.
+    diffuse, specular : (H, W, 3) float32, optional
+        Reflected radiance split by the lobe of the first surface: ``color = diffuse + specular + emission``. These and
+        the next two are stored beside the others for filters to come; the denoiser does not read them.
+    roughness : (H, W) float32, optional
+        Perceptual roughness of the first surface, 0 (mirror) to 1; 1 where nothing was hit.
+    hit_distance : (H, W, 2) float32, optional
+        Length of the ray from the first surface on along its diffuse and its specular lobe, in scene units; 0 where
+        the lobe was not sampled, inf where the ray left the scene.
     """
 
     color: Any = None
@@ -63,6 +75,10 @@ class Frame:
     emission: Any = None
     direct: Any = None
     indirect: Any = None
+    diffuse: Any = None
+    specular: Any = None
+    roughness: Any = None
+    hit_distance: Any = None
 
     def present(self) -> dict[str, Any]:
         """The fields that were given, by name."""

@@ -24,10 +24,15 @@ Plane = npt.NDArray[np.float32]
 # Channels of each field, in the order of its components; a third motion component may be missing.
 CHANNEL_NAMES: dict[str, tuple[str, ...]] = {
     "color": ("R", "G", "B"),
-    **{name: tuple(f"{name}.{c}" for c in "RGB") for name in ("albedo", "emission", "direct", "indirect")},
+    **{
+        name: tuple(f"{name}.{c}" for c in "RGB")
+        for name in ("albedo", "emission", "direct", "indirect", "diffuse", "specular")
+    },
     **{name: tuple(f"{name}.{c}" for c in "XYZ") for name in ("normal", "motion")},
     "depth": ("depth.Z",),
     "id": ("id",),
+    "roughness": ("roughness",),
+    "hit_distance": ("hit_distance.diffuse", "hit_distance.specular"),
 }
 MAX_ID = 2**24
 NUMBERED = re.compile(r"(frame|reference)\.\d+\.exr|still\.\d+\.png")

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from svgf_cl.frame import CHANNELS, Frame, Shape
-from tracer import builtin_scene, render_sequence
+from tracer import Shot, builtin_scene, render_sequence
 
 SHAPE = (53, 37)  # primes: no multiple of any vector width
 TINY = (7, 9)
@@ -73,5 +73,5 @@ def bumpy_sequence(
 @functools.cache
 def traced_sequence(fields: tuple[str, ...], count: int = 5, shape: Shape = (54, 96)) -> tuple[Frame, ...]:
     """Path-traced frames of the built-in scene under its moving camera."""
-    scene = builtin_scene()
-    return tuple(only(frame, fields) for frame in render_sequence(scene, scene.camera_path, shape, count))
+    shot = Shot(builtin_scene(), shape, count)
+    return tuple(only(frame, fields) for frame in render_sequence(shot))

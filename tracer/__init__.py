@@ -6,6 +6,7 @@ from .errors import SceneError
 from .loading import load_scene
 from .render import render_frame, render_reference, render_sequence
 from .scene import Scene
+from .shot import Shot
 
 __all__ = [
     "BUILTIN",
@@ -13,6 +14,7 @@ __all__ = [
     "CameraPath",
     "Scene",
     "SceneError",
+    "Shot",
     "builtin_scene",
     "load_scene",
     "render_frame",

@@ -1,17 +1,20 @@
-"""The pinhole camera, its path through the scene, and where it sees a point."""
+"""The camera, its path through the scene, its rays, and where it sees a point."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
+from .compiled import compiled
 from .errors import SceneError
+from .vec3 import Vec3, add, dot, normalise, scale, subtract
 from .vectors import Float64
 
-Vector = tuple[float, float, float]
+Vector = Vec3
 
 # Where no previous position exists (the point lay behind the camera): far outside any image.
 OUTSIDE = 1e6
@@ -19,7 +22,7 @@ OUTSIDE = 1e6
 
 @dataclass(frozen=True)
 class Camera:
-    """A pinhole camera.
+    """A pinhole camera, or one with a thin lens.
 
     Parameters
     ----------
@@ -86,30 +89,57 @@ class Camera:
         right /= np.linalg.norm(right)
         return np.stack([right, np.cross(right, forward), forward])
 
-    def directions(self, x: Float64, y: Float64, shape: tuple[int, int]) -> Float64:
-        """World directions (3, N) through the image positions `x`, `y` (N,) of a (height, width) image.
-
-        Whole numbers are pixel centres. A direction's component along the camera's axis is 1.
-        """
+    def lens(self, shape: tuple[int, int]) -> Lens:
+        """What compiled loops ask of the camera for a (height, width) image."""
         height, width = shape
-        scale = 2.0 * math.tan(math.radians(self.fov_y) / 2.0) / height
-        across = (x - (width - 1) / 2.0) * scale
-        above = ((height - 1) / 2.0 - y) * scale
-        return _rotate(self.basis().T, np.stack([across, above, np.ones_like(across)]))
-
-    def project(self, offset: Float64, shape: tuple[int, int]) -> Float64:
-        """Image position and depth, stacked (3, N), of points given relative to the eye (3, N), or of directions.
-
-        The inverse of `directions`. Points at or behind the eye's plane land at `OUTSIDE`.
-        """
-        height, width = shape
+        right, up, forward = (vector(axis) for axis in self.basis())
+        focus = math.dist(self.position, self.look_at)
         scale = height / (2.0 * math.tan(math.radians(self.fov_y) / 2.0))
-        across, above, depth = _rotate(self.basis(), offset)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            x = across / depth * scale + (width - 1) / 2.0
-            y = -above / depth * scale + (height - 1) / 2.0
-        seen = depth > 0.0
-        return np.stack([np.where(seen, x, OUTSIDE), np.where(seen, y, OUTSIDE), depth])
+        middle = (width - 1) / 2.0, (height - 1) / 2.0
+        return Lens(self.position, right, up, forward, scale, *middle, self.aperture / 2.0, focus)
+
+
+class Lens(NamedTuple):
+    """A camera and its image: axes, pixels in a unit at distance 1, the image's middle, the lens' radius and focus."""
+
+    position: Vec3
+    right: Vec3
+    up: Vec3
+    forward: Vec3
+    scale: float
+    middle_x: float
+    middle_y: float
+    radius: float
+    focus: float
+
+
+@compiled
+def ray_through(lens: Lens, x: float, y: float, u: float, v: float) -> tuple[Vec3, Vec3]:
+    """Origin and unit direction of a ray through the image position (x, y); whole numbers are pixel centres.
+
+    `u` and `v`, uniform in [0, 1), pick the point on the lens.
+    """
+    across, above = (x - lens.middle_x) / lens.scale, (lens.middle_y - y) / lens.scale
+    way = add(add(scale(lens.right, across), scale(lens.up, above)), lens.forward)
+    if lens.radius == 0.0:
+        return lens.position, normalise(way)
+    radius, angle = lens.radius * math.sqrt(u), 2.0 * math.pi * v
+    offset = add(scale(lens.right, radius * math.cos(angle)), scale(lens.up, radius * math.sin(angle)))
+    return add(lens.position, offset), normalise(subtract(scale(way, lens.focus), offset))
+
+
+@compiled
+def project(lens: Lens, offset: Vec3) -> Vec3:
+    """Image position and depth (x, y, depth) of a point given relative to the eye, or of a direction.
+
+    Points at or behind the eye's plane land at `OUTSIDE`.
+    """
+    depth = dot(offset, lens.forward)
+    if depth <= 0.0:
+        return OUTSIDE, OUTSIDE, depth
+    x = dot(offset, lens.right) / depth * lens.scale + lens.middle_x
+    y = lens.middle_y - dot(offset, lens.up) / depth * lens.scale
+    return x, y, depth
 
 
 @dataclass(frozen=True)
@@ -160,14 +190,6 @@ class CameraPath:
     def at_frame(self, number: float, frames: int) -> Camera:
         """The camera of frame `number`, from 0, in a sequence of so many that covers the whole path."""
         return self.at(number / max(frames - 1, 1))
-
-
-def _rotate(matrix: Float64, vectors: Float64) -> Float64:
-    """`matrix` (3, 3) times each of `vectors` (3, N), without BLAS: its rounding may hang on the number of threads."""
-    result: Float64 = matrix[:, :1] * vectors[0]
-    result += matrix[:, 1:2] * vectors[1]
-    result += matrix[:, 2:] * vectors[2]
-    return result
 
 
 def _catmull_rom(points: Float64, s: float) -> Float64:

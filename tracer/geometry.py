@@ -1,18 +1,19 @@
-"""The triangles of a scene, and what is found where a ray hits them."""
+"""The triangles of a scene at one time, and what is found where a ray hits them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from embreex.mesh_construction import TriangleMesh
-from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
+from .compiled import compiled
 from .materials import Material
 from .motion import Motion
-from .vectors import Float32, Float64, dot, normalise
+from .vec3 import Vec3, add, cross, dot, normalise, scale
+from .vectors import Float32, Float64
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,138 +39,146 @@ class Instance:
     uv: NDArray[np.floating] | None = None
     motion: Motion | None = None
 
+    @property
+    def masked(self) -> bool:
+        """Whether rays may pass through its surface."""
+        return self.material.alpha_cutoff is not None and self.material.base_texture is not None
 
-@dataclass(frozen=True, eq=False)
-class Hits:
-    """The rays of a batch that hit something.
+    def corners_at(self, time: float) -> NDArray[np.floating]:
+        """The corners (T, 3, 3) in the world at `time` in seconds."""
+        if self.motion is None:
+            return self.corners
+        matrix = self.motion.matrix(time)
+        return _product(self.corners, matrix[:3, :3]) + matrix[:3, 3]
 
-    Parameters
-    ----------
-    ray : (K,) int
-        Their numbers in the batch, ascending.
-    triangle : (K,) int32
-    u, v : (K,) float32
-        Barycentric coordinates of the second and third corner.
+    def normals_at(self, time: float) -> NDArray[np.floating]:
+        """The normals (T, 3, 3) at the corners in the world at `time` in seconds."""
+        if self.normals is None:
+            corners = self.corners_at(time)
+            face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            return _unit(np.repeat(face[:, None], 3, axis=1))
+        if self.motion is None:
+            return self.normals
+        return _unit(_product(self.normals, cofactors(self.motion.matrix(time)[:3, :3])))
+
+
+class Triangles(NamedTuple):
+    """Triangles as arrays over their number; of three rows the last two are differences to the first corner's.
+
+    Shapes: `corners` and `normals` (T, 3, 3), `uv` (T, 3, 2), `instance` (T,), ids from 1, `material` (T,).
     """
 
-    ray: NDArray[np.intp]
-    triangle: NDArray[np.int32]
-    u: Float32
-    v: Float32
-
-
-@dataclass(frozen=True, eq=False)
-class Surface:
-    """Where a batch of K rays met the scene; both normals look to the side the ray came from.
-
-    Parameters
-    ----------
-    origin : (3, K) float32
-        Start for new rays: the point, lifted off the surface by more than its rounding error.
-    normal, face_normal : (3, K) float32
-        Unit shading and geometric normal.
-    uv : (2, K) float32
-    front : (K,) bool
-        Whether the ray met the side from which the corners run counter-clockwise.
-    material : (K,) int32
-    """
-
-    origin: Float32
-    normal: Float32
-    face_normal: Float32
+    corners: Float32
+    normals: Float32
     uv: Float32
-    front: NDArray[np.bool_]
+    instance: NDArray[np.uint32]
     material: NDArray[np.int32]
 
+    @classmethod
+    def of(cls, instances: Sequence[Instance], ids: Sequence[int], materials: Sequence[int], time: float) -> Triangles:
+        """Gather instances, of these ids and numbers of materials, at `time` in seconds."""
+        counts = [len(instance.corners) for instance in instances]
+        uv = [np.zeros((len(i.corners), 3, 2)) if i.uv is None else i.uv for i in instances]
+        return cls(
+            corners_of(instances, time),
+            _differences(_joined([instance.normals_at(time) for instance in instances], (3, 3))),
+            _differences(_joined(uv, (3, 2))),
+            np.repeat(np.array(ids, np.uint32), counts),
+            np.repeat(np.array(materials, np.int32), counts),
+        )
 
-class Triangles:
-    """Every triangle of the scene, with Embree's tree over them.
 
-    Attributes
-    ----------
-    corner, edge1, edge2 : (3, T) float32
-        First corner, and the edges from it to the other two.
-    instance : (T,) uint32
-        Instance id of each triangle, from 1.
-    material : (T,) int32
-        Index of its material.
-    lift : float
-        Distance by which new rays start off a surface, in scene units.
+def corners_of(instances: Sequence[Instance], time: float) -> Float32:
+    """The first corner and two edges (T, 3, 3) of every triangle of `instances` at `time` in seconds."""
+    return _differences(_joined([instance.corners_at(time) for instance in instances], (3, 3)))
+
+
+def joined(first: Triangles, second: Triangles) -> Triangles:
+    """The triangles of both, those of the first before those of the second."""
+    return Triangles(*(np.concatenate(pair) for pair in zip(first, second, strict=True)))
+
+
+def cofactors(matrix: NDArray[np.floating]) -> Float64:
+    """What turns normals, up to length and sign, where `matrix` (3, 3) moves points: a flattening one has no inverse.
+
+    A mirroring matrix turns normals to the other side; which side of a surface is met is told by its corners.
+    """
+    a, b, c = matrix / (np.abs(matrix).max() or 1.0)  # else the products of a small scale are taken for zero
+    return np.array([np.cross(b, c), np.cross(c, a), np.cross(a, b)])
+
+
+class Surface(NamedTuple):
+    """A point where a ray met the scene; both normals look to the side the ray came from.
+
+    `point` is on the triangle, `u` and `v` are texture coordinates; `front` tells whether the ray met the side from
+    which the corners run counter-clockwise.
     """
 
-    def __init__(self, instances: Sequence[Instance], materials: Sequence[int]) -> None:
-        corners = np.concatenate([i.corners for i in instances]).astype(np.float32)
-        counts = [len(i.corners) for i in instances]
-        self.instance = np.repeat(np.arange(1, len(instances) + 1, dtype=np.uint32), counts)
-        self.material = np.repeat(np.array(materials, np.int32), counts)
-        self.corner, self.edge1, self.edge2 = _corner_and_edges(corners)
-        self._face_normal = normalise(np.cross(self.edge1, self.edge2, axis=0))
-        flat = np.repeat(self._face_normal.T[:, None], 3, axis=1)
-        starts = np.cumsum(counts) - counts
-        for item, start, count in zip(instances, starts, counts, strict=True):
-            if item.normals is not None:
-                flat[start : start + count] = item.normals
-        self._normals = _corner_and_edges(flat)
-        uv = [np.zeros((count, 3, 2)) if i.uv is None else i.uv for i, count in zip(instances, counts, strict=True)]
-        self._uv = _corner_and_edges(np.concatenate(uv).astype(np.float32))
-        # Positions carry an error of a few units in the last place of the largest coordinate, about 1e-7 of it.
-        self.lift = np.float32(1e-5 * np.abs(corners).max())
-        self._embree = EmbreeScene()
-        TriangleMesh(self._embree, corners)
-        # Embree builds its tree at the first query: not in several threads at once.
-        self.occluded(np.zeros((3, 1), np.float32), np.ones((3, 1), np.float32))
-
-    def intersect(self, origin: Float32, direction: Float32) -> Hits:
-        """The first hit of each ray from `origin` (3, N) along `direction` (3, N), of any length."""
-        found = self._embree.run(origin.T, direction.T, output=1)
-        triangle = found["primID"]
-        ray = np.flatnonzero(triangle >= 0)
-        return Hits(ray, triangle.take(ray), found["u"].take(ray), found["v"].take(ray))
-
-    def occluded(self, origin: Float32, direction: Float32, reach: float = np.inf) -> NDArray[np.bool_]:
-        """Whether anything lies on each ray between `origin` and `origin + reach * direction`: (N,)."""
-        blocked: NDArray[np.bool_] = self._embree.run(origin.T, direction.T, dists=reach, query="OCCLUDED") == 0
-        return blocked
-
-    def surface(self, hits: Hits, direction: Float32) -> Surface:
-        """What the rays of `direction` (3, K), one for each hit, met."""
-        u, v, t = hits.u, hits.v, hits.triangle
-        face_normal = self._face_normal.take(t, axis=1)
-        front = dot(face_normal, direction) < 0
-        face_normal *= np.where(front, np.float32(1), np.float32(-1))
-        normal = normalise(_interpolate(self._normals, t, u, v))
-        normal *= np.copysign(np.float32(1), dot(normal, face_normal))
-        origin = _interpolate((self.corner, self.edge1, self.edge2), t, u, v)
-        origin += self.lift * face_normal
-        uv = _interpolate(self._uv, t, u, v)
-        return Surface(origin, normal, face_normal, uv, front, self.material.take(t))
-
-    def positions(self, triangle: NDArray[np.integer], u: Float32, v: Float32) -> Float64:
-        """World positions (3, K) in double precision."""
-        result = self.corner.take(triangle, axis=1).astype(np.float64)
-        result += self.edge1.take(triangle, axis=1) * u.astype(np.float64)
-        result += self.edge2.take(triangle, axis=1) * v.astype(np.float64)
-        return result
-
-    def uv(self, triangle: NDArray[np.integer], u: Float32, v: Float32) -> Float32:
-        """Texture coordinates (2, K) at barycentric coordinates of triangles (K,)."""
-        return _interpolate(self._uv, triangle, u, v)
+    point: Vec3
+    face_normal: Vec3
+    normal: Vec3
+    u: float
+    v: float
+    material: int
+    front: bool
 
 
-def _corner_and_edges(values: Float32) -> tuple[Float32, Float32, Float32]:
-    """Split per-corner values (T, 3, C) into the first corner's and the differences to it, as planes (C, T)."""
-    first = values[:, 0]
-    planes = (first, values[:, 1] - first, values[:, 2] - first)
-    a, b, c = (np.ascontiguousarray(plane.T) for plane in planes)
-    return a, b, c
+@compiled
+def surface_at(triangles: Triangles, triangle: int, b: float, c: float, direction: Vec3) -> Surface:
+    """What a ray along `direction` met at barycentric coordinates `b`, `c` of the second and third corner."""
+    corners = triangles.corners
+    edge1, edge2 = _row(corners, triangle, 1), _row(corners, triangle, 2)
+    face_normal = normalise(cross(edge1, edge2))
+    front = dot(face_normal, direction) < 0.0
+    if not front:
+        face_normal = scale(face_normal, -1.0)
+    normal = normalise(interpolated(triangles.normals, triangle, b, c))
+    if dot(normal, face_normal) < 0.0:
+        normal = scale(normal, -1.0)
+    # A shading normal that looks away from the ray has nothing to say about the light that goes back along it.
+    if dot(normal, direction) >= 0.0:
+        normal = face_normal
+    u, v = texture_coordinates(triangles, triangle, b, c)
+    point = interpolated(corners, triangle, b, c)
+    return Surface(point, face_normal, normal, u, v, triangles.material[triangle], front)
 
 
-def _interpolate(
-    table: tuple[Float32, Float32, Float32], triangle: NDArray[np.integer], u: Float32, v: Float32
-) -> Float32:
-    first, edge1, edge2 = (plane.take(triangle, axis=1) for plane in table)
-    edge1 *= u
-    edge2 *= v
-    first += edge1
-    first += edge2
-    return first
+@compiled
+def interpolated(values: Float32, triangle: int, b: float, c: float) -> Vec3:
+    """A corner and two differences (T, 3, 3) at barycentric coordinates, in double precision."""
+    return add(_row(values, triangle, 0), add(scale(_row(values, triangle, 1), b), scale(_row(values, triangle, 2), c)))
+
+
+@compiled
+def texture_coordinates(triangles: Triangles, triangle: int, b: float, c: float) -> tuple[float, float]:
+    """Texture coordinates (u, v) at barycentric coordinates of a triangle."""
+    uv = triangles.uv
+    u = float(uv[triangle, 0, 0]) + b * uv[triangle, 1, 0] + c * uv[triangle, 2, 0]
+    v = float(uv[triangle, 0, 1]) + b * uv[triangle, 1, 1] + c * uv[triangle, 2, 1]
+    return u, v
+
+
+@compiled
+def _row(values: Float32, triangle: int, corner: int) -> Vec3:
+    return float(values[triangle, corner, 0]), float(values[triangle, corner, 1]), float(values[triangle, corner, 2])
+
+
+def _differences(values: NDArray[np.floating]) -> Float32:
+    """Per-corner values (T, 3, C) with those of the second and third corner relative to the first."""
+    result = values.astype(np.float32)
+    result[:, 1:] -= result[:, :1]
+    return np.ascontiguousarray(result)
+
+
+def _joined(parts: Sequence[NDArray[np.floating]], shape: tuple[int, int]) -> NDArray[np.floating]:
+    return np.concatenate([*parts, np.zeros((0, *shape), np.float32)])
+
+
+def _product(vectors: NDArray[np.floating], matrix: Float64) -> Float64:
+    """`matrix` times each of `vectors` (..., 3), without BLAS: its rounding may hang on the number of threads."""
+    return vectors[..., :1] * matrix[:, 0] + vectors[..., 1:2] * matrix[:, 1] + vectors[..., 2:] * matrix[:, 2]
+
+
+def _unit(vectors: NDArray[np.floating]) -> NDArray[np.floating]:
+    length = np.sqrt(np.square(vectors).sum(-1, keepdims=True))
+    return vectors / np.where(length > 0.0, length, 1.0)

@@ -1,17 +1,20 @@
-"""Materials: Lambertian reflection and emission, each a factor times an optional texture."""
+"""Materials, and how a compiled loop looks up what one is like at a point."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .compiled import compiled
 from .errors import SceneError
 from .motion import Track
-from .textures import LINEAR, Image, Textures
-from .vectors import Float32
+from .textures import LINEAR, Image, Textures, texture_colour, texture_opacity
+from .vec3 import Vec3, multiply, row
+from .vectors import Float64
 
 Colour = tuple[float, float, float]
 
@@ -73,56 +76,76 @@ class Material:
         if not 1.0 <= self.ior < np.inf:
             raise SceneError(f"material: expected a finite refractive index >= 1, got {self.ior}")
 
-    def mean_emission(self) -> NDArray[np.float64]:
-        """Radiance (3,) averaged over the texture."""
-        if self.emission_texture is None:
-            return np.array(self.emission)
-        texture: NDArray[np.float64] = LINEAR[self.emission_texture].mean((0, 1), np.float64)
-        return np.array(self.emission) * texture
+    def emission_at(self, time: float) -> Float64:
+        """Radiance (3,) at `time` in seconds, averaged over the texture."""
+        mean = np.array(self.emission) * self.brightness_at(time)
+        if self.emission_texture is not None:
+            mean *= LINEAR[self.emission_texture].mean((0, 1), np.float64)
+        return mean
+
+    def brightness_at(self, time: float) -> float:
+        """The factor of `emission` at `time` in seconds, >= 0."""
+        return 1.0 if self.brightness is None else max(float(self.brightness.at(time)[0]), 0.0)
 
 
-class MaterialTable:
-    """The materials of a scene as arrays, looked up by index for a batch of hits."""
+class Materials(NamedTuple):
+    """The materials of a scene as arrays over their number; a texture's number is -1 where there is none."""
 
-    def __init__(self, materials: Sequence[Material]) -> None:
+    base_colour: Float64
+    base_texture: NDArray[np.int64]
+    emission: Float64
+    emission_texture: NDArray[np.int64]
+    metallic: Float64
+    roughness: Float64
+    ior: Float64
+    transmissive: NDArray[np.bool_]
+    alpha_cutoff: Float64
+    two_sided: NDArray[np.bool_]
+    textures: Textures
+
+    @classmethod
+    def of(cls, materials: Sequence[Material]) -> Materials:
+        """Gather the materials, each image once."""
         images: dict[int, Image] = {}
         for material in materials:
             for image in (material.base_texture, material.emission_texture):
                 if image is not None:
                     images.setdefault(id(image), image)
         number = {key: index for index, key in enumerate(images)}
-        self._textures = Textures(list(images.values()))
-        self._base = _Property(
-            [m.base_colour for m in materials], [number.get(id(m.base_texture), -1) for m in materials]
+        return cls(
+            np.array([m.base_colour for m in materials], np.float64),
+            np.array([number.get(id(m.base_texture), -1) for m in materials], np.int64),
+            np.array([m.emission for m in materials], np.float64),
+            np.array([number.get(id(m.emission_texture), -1) for m in materials], np.int64),
+            np.array([m.metallic for m in materials], np.float64),
+            np.array([m.roughness for m in materials], np.float64),
+            np.array([m.ior for m in materials], np.float64),
+            np.array([m.transmissive for m in materials], np.bool_),
+            np.array([m.alpha_cutoff or 0.0 for m in materials], np.float64),
+            np.array([m.two_sided for m in materials], np.bool_),
+            Textures.of(list(images.values())),
         )
-        self._emission = _Property(
-            [m.emission for m in materials], [number.get(id(m.emission_texture), -1) for m in materials]
-        )
-
-    def albedo(self, material: NDArray[np.int32], uv: Float32) -> Float32:
-        """Reflectance (3, N) of the materials `material` (N,) at texture coordinates `uv` (2, N)."""
-        return self._base.evaluate(self._textures, material, uv)
-
-    def emission(self, material: NDArray[np.int32], uv: Float32) -> Float32:
-        """Emitted radiance (3, N)."""
-        return self._emission.evaluate(self._textures, material, uv)
 
 
-class _Property:
-    """A colour factor and a texture number (-1 = none) for each material."""
+@compiled
+def base_colour(materials: Materials, material: int, u: float, v: float) -> Vec3:
+    """The base colour of a material at texture coordinates (u, v)."""
+    colour = row(materials.base_colour, material)
+    texture = materials.base_texture[material]
+    return multiply(colour, texture_colour(materials.textures, texture, u, v)) if texture >= 0 else colour
 
-    def __init__(self, factors: Sequence[Colour], textures: Sequence[int]) -> None:
-        self._factors = np.array(factors, np.float32).reshape(-1, 3).T.copy()
-        self._texture_of = np.array(textures, np.int32)
 
-    def evaluate(self, textures: Textures, material: NDArray[np.int32], uv: Float32) -> Float32:
-        values: Float32 = self._factors.take(material, axis=1)
-        if (self._texture_of < 0).all():
-            return values
-        texture = self._texture_of.take(material)
-        textured = np.flatnonzero(texture >= 0)
-        if textured.size:
-            texels = textures.sample(texture.take(textured), uv.take(textured, axis=1))
-            for channel in range(3):
-                values[channel, textured] *= texels[channel]
-        return values
+@compiled
+def emitted_radiance(materials: Materials, material: int, u: float, v: float) -> Vec3:
+    """The radiance that a material emits at texture coordinates (u, v)."""
+    radiance = row(materials.emission, material)
+    texture = materials.emission_texture[material]
+    return multiply(radiance, texture_colour(materials.textures, texture, u, v)) if texture >= 0 else radiance
+
+
+@compiled
+def is_solid(materials: Materials, material: int, u: float, v: float) -> bool:
+    """Whether a ray stops at texture coordinates (u, v) of a material with an alpha mask."""
+    texture = materials.base_texture[material]
+    cutoff = float(materials.alpha_cutoff[material])
+    return texture < 0 or texture_opacity(materials.textures, texture, u, v) >= cutoff

@@ -1,143 +1,134 @@
-"""Images of a scene: one frame, a sequence, a reference."""
+"""Images of a shot: frames as a renderer hands them to the denoiser, and the samples that references are made of."""
 
 from __future__ import annotations
 
 import os
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
-from typing import Any, TypeVar
+from concurrent.futures import Future, ThreadPoolExecutor
+from functools import partial
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from svgf_cl.frame import Frame
 
-from .camera import Camera, CameraPath
+from .camera import Lens
 from .errors import SceneError
-from .sampling import pixel_jitter, random_stream
-from .scene import Scene
-from .vectors import Float32, Float64
-from .view import Shape, View
+from .integrator import trace
+from .paths import (
+    DIRECT_DIFFUSE,
+    DIRECT_SPECULAR,
+    EMISSION,
+    INDIRECT_DIFFUSE,
+    INDIRECT_SPECULAR,
+    Before,
+    Draws,
+    Features,
+)
+from .sampling import pixel_jitter, stream_key
+from .scene import Moment
+from .shading import pick_moments, spread
+from .shot import Shot
+from .vectors import Float32
 
-# Pixels that one task traces at once: few enough for the temporaries to stay in a core's cache, enough for NumPy and
-# Embree to amortise their calls. Each tile has a random stream of its own, so the noise depends on this number.
+# Pixels that one task traces at once: few enough for what Embree and the compiled loops hand to each other to stay in a
+# core's cache, enough to amortise their calls.
 TILE = 1 << 14
 
-# First number of a random stream's key: a reference shares no noise with the frames that are compared with it.
+# Moments within the time the shutter is open; each ray picks one. What moves by fewer pixels than this in that time
+# leaves no gaps between its pictures.
+MOMENTS = 16
+
+# What a stream of random numbers is for: a reference shares no noise with the frames that are compared with it.
 FRAME, REFERENCE = 0, 1
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 
-def render_sequence(
-    scene: Scene,
-    path: CameraPath,
-    size: Shape,
-    frames: int,
-    spp: int = 1,
-    jitter: bool = True,
-    seed: int = 0,
-    bounces: int = 1,
-) -> Iterator[Frame]:
-    """Render `frames` frames of (height, width) `size` along the whole of `path`, one after another.
+class Exposure(NamedTuple):
+    """What one moment of a frame's open shutter sees, and where that was one frame earlier."""
 
-    The other parameters, and the errors, are those of `render_frame`.
+    moment: Moment
+    lens: Lens
+    before: Before
+
+
+def render_sequence(
+    shot: Shot, *, spp: int = 1, seed: int = 0, jitter: bool = True, bounces: int = 1
+) -> Iterator[Frame]:
+    """Render the frames of a shot, one after another.
+
+    Parameters and errors are those of `render_frame`.
     """
-    previous = None
-    for index in range(frames):
-        camera = path.at_frame(index, frames)
-        yield render_frame(
-            scene, camera, previous, size, frame_index=index, spp=spp, jitter=jitter, seed=seed, bounces=bounces
-        )
-        previous = camera
+    for number in range(shot.frames):
+        yield render_frame(shot, number, spp=spp, seed=seed, jitter=jitter, bounces=bounces)
 
 
 def render_frame(
-    scene: Scene,
-    camera: Camera,
-    previous_camera: Camera | None,
-    shape: Shape,
-    *,
-    frame_index: int = 0,
-    spp: int = 1,
-    jitter: bool = True,
-    seed: int = 0,
-    bounces: int = 1,
+    shot: Shot, number: int, *, spp: int = 1, seed: int = 0, jitter: bool = True, bounces: int = 1
 ) -> Frame:
     """Render one noisy frame with its G-buffer.
 
     Parameters
     ----------
-    scene : Scene
-    camera, previous_camera : Camera
-        Those of this frame and of the one before; None where there is none, which gives no motion.
-    shape : (height, width)
-        Size of the image in pixels.
-    frame_index : int
-        Number of the frame, >= 0; it picks the noise and the sub-pixel offset.
+    shot : Shot
+    number : int
+        The frame's place in the shot, from 0; it picks the noise and the sub-pixel offset.
     spp : int
         Samples per pixel, >= 1. The G-buffer is the first sample's; radiance is the mean over all.
+    seed : int
+        >= 0. The same seed gives the same image, whatever the number of threads.
     jitter : bool
         Move the first sample off the pixel centre by the frame's Halton offset, and further samples at random
         within the pixel.
-    seed : int
-        >= 0. The same seed gives the same image, whatever the number of threads.
     bounces : int
-        Surfaces a path may visit after the first, >= 0.
+        Surfaces that may scatter a path after the first, >= 0.
 
     Returns
     -------
     Frame
-        With every field; ``color = direct + indirect + emission``.
+        With every field; ``color = direct + indirect + emission = diffuse + specular + emission``.
 
     Raises
     ------
     SceneError
         A number is out of its range.
     """
-    _check(shape, spp=(spp, 1), frame_index=(frame_index, 0), seed=(seed, 0), bounces=(bounces, 0))
-
-    def trace(job: tuple[int, slice]) -> tuple[slice, Float32, dict[str, NDArray[np.generic]]]:
-        sample, tile = job
-        random = random_stream(FRAME, seed, frame_index, sample, tile.start)
-        x, y = _pixels(tile, shape)
-        if jitter:
-            dx, dy = pixel_jitter(frame_index) if sample == 0 else random.random((2, len(x))) - 0.5
-            x, y = x + dx, y + dy
-        view = View.through(scene, camera, x, y, shape)
-        return tile, view.radiance(random, bounces), {} if sample else view.features(previous_camera or camera)
-
-    light = np.zeros((3, 3, shape[0] * shape[1]), np.float32)
-    features: dict[str, list[NDArray[np.generic]]] = {}
-    for tile, radiance, part in _in_threads(trace, _jobs(spp, shape)):
-        light[:, :, tile] += radiance
-        for name, planes in part.items():
-            features.setdefault(name, []).append(planes)
+    _check(spp=(spp, 1), number=(number, 0), seed=(seed, 0), bounces=(bounces, 0))
+    light = np.zeros((shot.shape[0] * shot.shape[1], 5, 3), np.float32)
+    features = Features.empty(len(light))
+    trace_range = partial(trace_samples, shot, number, stream=FRAME, seed=seed, jitter=jitter, bounces=bounces)
+    for tile in trace_range(range(1), described=True):
+        light[tile.pixels] = tile.light
+        for target, values in zip(features, tile.features, strict=True):
+            target[tile.pixels] = values
+    for tile in trace_range(range(1, spp)):
+        light[tile.pixels] += tile.light
     light /= spp
-    direct, indirect, emission = light
-    fields = {name: np.concatenate(parts, axis=-1) for name, parts in features.items()}
-    fields |= {"color": direct + indirect + emission, "direct": direct, "indirect": indirect, "emission": emission}
-    return Frame(**{name: _image(planes, shape) for name, planes in fields.items()})
+    radiance = Radiance.of(light)
+    color = radiance.direct + radiance.indirect + radiance.emission
+    fields = {"color": color} | radiance._asdict() | features._asdict()
+    return Frame(**{name: values.reshape(*shot.shape, *values.shape[1:]) for name, values in fields.items()})
 
 
 def render_reference(
-    scene: Scene,
-    camera: Camera,
-    shape: Shape,
+    shot: Shot,
+    number: int,
     *,
     spp: int,
     seed: int = 0,
-    bounces: int = 1,
     jitter: bool = True,
+    bounces: int = 1,
     rows: tuple[int, int] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Float32:
-    """Render what the frames converge to: the mean radiance over each pixel's square.
+    """Render what a frame converges to: the mean radiance over each pixel's square.
 
     Parameters
     ----------
-    scene, camera, shape, seed, bounces
+    shot, number, seed, bounces
         As in `render_frame`. No noise is shared with a frame of the same seed.
     spp : int
         Samples per pixel, >= 1.
@@ -158,57 +149,162 @@ def render_reference(
     SceneError
         A number is out of its range.
     """
-    first, end = rows or (0, shape[0])
-    _check(shape, spp=(spp, 1), seed=(seed, 0), bounces=(bounces, 0))
-    if not 0 <= first < end <= shape[0]:
-        raise SceneError(f"rows: expected 0 <= first < end <= {shape[0]}, got {rows}")
-    window = end - first, shape[1]
-
-    def trace(job: tuple[int, slice]) -> tuple[int, slice, Float32]:
-        sample, tile = job
-        random = random_stream(REFERENCE, seed, sample, tile.start)
-        x, y = _pixels(tile, window) + (random.random((2, tile.stop - tile.start)) - 0.5 if jitter else 0.0)
-        return sample, tile, View.through(scene, camera, x, y + first, shape).radiance(random, bounces).sum(0)
-
-    total = np.zeros((3, window[0] * window[1]))
-    for sample, tile, radiance in _in_threads(trace, _jobs(spp, window)):
-        total[:, tile] += radiance
-        if progress and tile.stop == total.shape[1]:
-            progress(sample + 1, spp)
-    return _image((total / spp).astype(np.float32), window)
+    _check(spp=(spp, 1), number=(number, 0), seed=(seed, 0), bounces=(bounces, 0))
+    height, width = shot.shape[0] if rows is None else rows[1] - rows[0], shot.shape[1]
+    total = np.zeros((max(height, 0) * width, 3))
+    for tile in trace_samples(
+        shot, number, range(spp), stream=REFERENCE, seed=seed, jitter=jitter, bounces=bounces, rows=rows
+    ):
+        total[tile.pixels] += tile.light.sum(1)
+        if progress and tile.pixels.stop == len(total):
+            progress(tile.sample + 1, spp)
+    return (total / spp).astype(np.float32).reshape(height, width, 3)
 
 
-def _jobs(spp: int, shape: Shape) -> list[tuple[int, slice]]:
-    """(sample, range of pixels) for everything to be traced, sample after sample."""
-    count = shape[0] * shape[1]
-    tiles = [slice(start, min(start + TILE, count)) for start in range(0, count, TILE)]
-    return [(sample, tile) for sample in range(spp) for tile in tiles]
+class Radiance(NamedTuple):
+    """Light of N pixels, (N, 3) each: ``direct + indirect = diffuse + specular``.
+
+    Direct light was reflected once, indirect light more often; diffuse light by the diffuse lobe of the first surface.
+    """
+
+    direct: Float32
+    indirect: Float32
+    diffuse: Float32
+    specular: Float32
+    emission: Float32
+
+    @classmethod
+    def of(cls, light: Float32) -> Radiance:
+        """Sum up the kinds of light (N, 5, 3)."""
+        return cls(
+            light[:, DIRECT_DIFFUSE] + light[:, DIRECT_SPECULAR],
+            light[:, INDIRECT_DIFFUSE] + light[:, INDIRECT_SPECULAR],
+            light[:, DIRECT_DIFFUSE] + light[:, INDIRECT_DIFFUSE],
+            light[:, DIRECT_SPECULAR] + light[:, INDIRECT_SPECULAR],
+            np.ascontiguousarray(light[:, EMISSION]),
+        )
+
+
+class Tile(NamedTuple):
+    """One sample of some neighbouring pixels, which count row by row from the first row traced.
+
+    `light` (N, 5, 3) is what `Radiance.of` takes; `features` have room for no pixel unless they were asked for.
+    """
+
+    sample: int
+    pixels: slice
+    light: Float32
+    features: Features
+
+
+def trace_samples(
+    shot: Shot,
+    number: int,
+    samples: Iterable[int],
+    *,
+    stream: int,
+    seed: int = 0,
+    jitter: bool = True,
+    bounces: int = 1,
+    rows: tuple[int, int] | None = None,
+    described: bool = False,
+) -> Iterator[Tile]:
+    """Trace samples of a frame's pixels, on all cores.
+
+    Parameters
+    ----------
+    shot, number, seed, bounces
+        As in `render_frame`.
+    samples : iterable of int
+        Their numbers, >= 0. A sample is the same whoever traces it, and with whichever others.
+    stream : int
+        What they are for: `FRAME` or `REFERENCE`.
+    jitter : bool
+        Spread the samples over the pixel's square: the first of a frame by the frame's Halton offset, all others at
+        random. Otherwise they go through the pixel's centre.
+    rows : (int, int), optional
+        First row and the one after the last, of those to trace; all by default.
+    described : bool
+        Give the G-buffer too.
+
+    Yields
+    ------
+    Tile
+        Sample after sample, each from the first pixel to the last, however many threads work.
+    """
+    first, end = rows or (0, shot.shape[0])
+    if not 0 <= first < end <= shot.shape[0]:
+        raise SceneError(f"rows: expected 0 <= first < end <= {shot.shape[0]}, got {rows}")
+    width = shot.shape[1]
+    exposures = _exposures(shot, number)
+    key = stream_key(stream, seed, number)
+
+    def job(task: tuple[int, slice]) -> Tile:
+        sample, pixels = task
+        draws = Draws(key, sample, np.arange(pixels.start, pixels.stop) + first * width)
+        count = len(draws.pixels)
+        positions = np.stack([draws.pixels % width, draws.pixels // width], axis=1).astype(np.float64)
+        if jitter and stream == FRAME and sample == 0:
+            positions += pixel_jitter(number)
+        elif jitter:
+            spread(draws, positions)
+        tile = Tile(sample, pixels, np.empty((count, 5, 3), np.float32), Features.empty(count if described else 0))
+        for exposure, chosen in zip(exposures, _shared_out(draws, len(exposures)), strict=True):
+            part = draws._replace(pixels=draws.pixels[chosen])
+            features = Features.empty(len(part.pixels) if described else 0)
+            tile.light[chosen] = trace(*exposure, part, positions[chosen], bounces, features)
+            for target, values in zip(tile.features, features, strict=True) if described else ():
+                target[chosen] = values
+        return tile
+
+    tiles = [slice(start, min(start + TILE, (end - first) * width)) for start in range(0, (end - first) * width, TILE)]
+    yield from _in_threads(job, ((sample, pixels) for sample in samples for pixels in tiles))
+
+
+def _exposures(shot: Shot, number: int) -> list[Exposure]:
+    """What the moments of a frame see: a single one where nothing is blurred."""
+    shutter = shot.camera(number).shutter
+    moving = shot.scene.changes or shot.camera(number) != shot.camera(number + shutter)
+    opened = [shutter * (index + 0.5) / MOMENTS for index in range(MOMENTS)] if shutter and moving else [0.0]
+    return [_exposure(shot, number + offset, max(number - 1, 0) + offset) for offset in opened]
+
+
+def _exposure(shot: Shot, now: float, before: float) -> Exposure:
+    scene, shape = shot.scene, shot.shape
+    return Exposure(
+        scene.at(shot.time(now)),
+        shot.camera(now).lens(shape),
+        Before(shot.camera(before).lens(shape), scene.corners_at(shot.time(before))),
+    )
+
+
+def _shared_out(draws: Draws, moments: int) -> list[Any]:
+    """Which pixels of a batch see each of the moments."""
+    if moments == 1:
+        return [slice(None)]
+    chosen = np.empty(len(draws.pixels), np.int64)
+    pick_moments(draws, moments, chosen)
+    return [np.flatnonzero(chosen == moment) for moment in range(moments)]
 
 
 def _in_threads(function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:
-    """Results in the order of `items`, computed on all cores: NumPy and Embree let other threads run meanwhile."""
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    """Results in the order of `items`, computed on all cores; few are ever waiting to be fetched."""
+    workers = os.cpu_count() or 1
+    with ThreadPoolExecutor(workers) as pool:
+        waiting: deque[Future[Result]] = deque()
         try:
-            yield from pool.map(function, items)
+            for item in items:
+                waiting.append(pool.submit(function, item))
+                if len(waiting) > 2 * workers:
+                    yield waiting.popleft().result()
+            while waiting:
+                yield waiting.popleft().result()
         finally:
             pool.shutdown(cancel_futures=True)
 
 
-def _pixels(tile: slice, shape: Shape) -> Float64:
-    """Columns and rows (2, N) of a range of pixels."""
-    y, x = np.divmod(np.arange(tile.start, tile.stop), shape[1])
-    return np.stack([x, y]).astype(np.float64)
-
-
-def _image(planes: NDArray[Any], shape: Shape) -> NDArray[Any]:
-    """(3, N) or (N,) planes as a C-contiguous image (H, W, 3) or (H, W)."""
-    return np.ascontiguousarray(planes.T).reshape(*shape, *planes.shape[:-1])
-
-
-def _check(shape: Shape, **numbers: tuple[int, int]) -> None:
-    """Raise `SceneError` unless `shape` is positive and each number reaches its minimum."""
-    if min(shape) < 1:
-        raise SceneError(f"shape: expected a height and a width of at least 1, got {shape}")
+def _check(**numbers: tuple[int, int]) -> None:
+    """Raise `SceneError` unless each number reaches its minimum."""
     for name, (value, least) in numbers.items():
         if value < least:
             raise SceneError(f"{name}: expected at least {least}, got {value}")

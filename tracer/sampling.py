@@ -1,12 +1,16 @@
-"""Random numbers and the two distributions the tracer draws from."""
+"""Random numbers, one independent stream a path, and the offsets of a frame's rays within their pixels."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from .vectors import Float32
+from .compiled import compiled
 
 JITTER_PERIOD = 16
+
+MASK = 0xFFFFFFFF
+
+Random4 = tuple[float, float, float, float]
 
 
 def halton(index: int, base: int) -> float:
@@ -19,41 +23,40 @@ def halton(index: int, base: int) -> float:
     return value
 
 
-def pixel_jitter(frame_index: int) -> tuple[float, float]:
+def pixel_jitter(frame: int) -> tuple[float, float]:
     """Sub-pixel offset (x, y) of a frame, each in (-0.5, 0.5): Halton (2, 3), looped after `JITTER_PERIOD` frames."""
-    index = frame_index % JITTER_PERIOD + 1
+    index = frame % JITTER_PERIOD + 1
     return halton(index, 2) - 0.5, halton(index, 3) - 0.5
 
 
-def random_stream(*key: int) -> np.random.Generator:
-    """A generator of its own for each `key` of non-negative integers, whichever thread asks for it."""
-    return np.random.default_rng(key)
+def stream_key(*numbers: int) -> int:
+    """The 32-bit key of the stream that non-negative integers such as a seed and a frame's number name together."""
+    return int(np.random.SeedSequence(numbers).generate_state(1)[0])
 
 
-def sphere_directions(u: Float32) -> Float32:
-    """Uniform directions (3, N) on the unit sphere from uniform numbers `u` (2, N) in [0, 1)."""
-    directions = np.empty((3, u.shape[1]), np.float32)
-    z = np.subtract(1, 2 * u[0], out=directions[2])
-    radius = np.sqrt(1 - z * z)
-    angle = u[1] * np.float32(2 * np.pi)
-    np.multiply(radius, np.cos(angle), out=directions[0])
-    np.multiply(radius, np.sin(angle), out=directions[1])
-    return directions
+@compiled
+def random4(key: int, pixel: int, sample: int, draw: int) -> Random4:
+    """Four uniform numbers in [0, 1): those of draw number `draw` of a pixel's sample in the stream `key`.
 
+    They hang on these four numbers alone, not on what was drawn before: a picture may be traced in any order.
 
-def cosine_directions(normal: Float32, u: Float32) -> Float32:
-    """Directions (3, N) around `normal` (3, N) with density cos(angle) / pi, from `u` (2, N) in [0, 1).
-
-    Their lengths vary: the tip lies on the sphere of radius 1 around the tip of the normal, which needs neither a
-    tangent frame nor a square root.
+    Source: pcg4d of Jarzynski & Olano, Hash Functions for GPU Rendering, JCGT 9 (3), 2020.
     """
-    directions = sphere_directions(u)
-    directions += normal
-    return directions
-
-
-def triangle_coordinates(u: Float32) -> tuple[Float32, Float32]:
-    """Barycentric coordinates (N,), (N,) of the second and third corner, uniform over a triangle, from `u` (2, N)."""
-    root = np.sqrt(u[0])
-    second = 1 - root
-    return second, u[1] * root
+    x = (pixel * 1664525 + 1013904223) & MASK
+    y = (sample * 1664525 + 1013904223) & MASK
+    z = (draw * 1664525 + 1013904223) & MASK
+    w = (key * 1664525 + 1013904223) & MASK
+    x = (x + y * w) & MASK
+    y = (y + z * x) & MASK
+    z = (z + x * y) & MASK
+    w = (w + y * z) & MASK
+    x ^= x >> 16
+    y ^= y >> 16
+    z ^= z >> 16
+    w ^= w >> 16
+    x = (x + y * w) & MASK
+    y = (y + z * x) & MASK
+    z = (z + x * y) & MASK
+    w = (w + y * z) & MASK
+    unit = 1.0 / 4294967296.0
+    return x * unit, y * unit, z * unit, w * unit

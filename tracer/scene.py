@@ -1,22 +1,42 @@
-"""The scene: geometry, materials, lights and sky, ready to be traced."""
+"""The scene: what is in it, and what that makes at a moment, ready to be traced."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from .camera import Camera, CameraPath, vector
 from .errors import SceneError
-from .geometry import Instance, Triangles
-from .lights import AreaLights, PointLight, Sun
-from .materials import Colour, Material, MaterialTable
-from .sky import Environment
+from .geometry import Instance, Triangles, corners_of, joined
+from .light_sampling import Lights
+from .lights import PointLight, Sun
+from .materials import Colour, Materials
+from .sky import Environment, SkyTable, sky_table
+from .trees import Tree, Trees
 from .vectors import Float32
 
 
+class Tables(NamedTuple):
+    """Everything about a scene at one moment that compiled loops look up."""
+
+    triangles: Triangles
+    materials: Materials
+    lights: Lights
+    sky: SkyTable
+    lift: float
+
+
+class Moment(NamedTuple):
+    """A scene at one time."""
+
+    tables: Tables
+    trees: Trees
+
+
 class Scene:
-    """Objects, a sky and a default camera path.
+    """Objects, lights, a sky and a default camera path.
 
     Parameters
     ----------
@@ -43,28 +63,114 @@ class Scene:
         sky: Colour | Environment | None = None,
         camera_path: CameraPath | None = None,
     ) -> None:
-        instances = [instance for instance in instances if len(instance.corners)]
-        if not instances:
-            raise SceneError("scene: expected at least one triangle, got none")
-        if not all(np.isfinite(instance.corners).all() for instance in instances):
-            raise SceneError("scene: expected finite vertex positions, got NaN or infinity")
-        if sky is not None and not (np.isfinite(sky).all() and min(sky) >= 0.0):
-            raise SceneError(f"sky: expected three radiances >= 0, got {sky}")
-        materials: dict[int, Material] = {id(i.material): i.material for i in instances}
-        number = {key: index for index, key in enumerate(materials)}
-        self.triangles = Triangles(instances, [number[id(i.material)] for i in instances])
-        self.materials = MaterialTable(list(materials.values()))
-        self.lights = AreaLights(self.triangles, list(materials.values()), self.materials)
-        self.sky: Float32 | None = np.array(sky, np.float32)[:, None] if sky is not None and max(sky) > 0.0 else None
-        if self.sky is None and not self.lights.count:
+        self.instances = tuple(instance for instance in instances if len(instance.corners))
+        self.lights, self.sky = tuple(lights), sky
+        _check(self.instances)
+        self.camera_path = camera_path or CameraPath.static(_framing(self.instances))
+        self._prepare()
+        if not self._shines():
             raise SceneError("scene: nothing in it emits light; give it a sky, for example --sky 1,1,1")
-        self.camera_path = camera_path or CameraPath.static(_framing(instances))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickled as what it is made of: Embree's trees cannot be sent to another process."""
+        return _make, (self.instances, self.lights, self.sky, self.camera_path)
+
+    def at(self, time: float) -> Moment:
+        """The scene at `time` in seconds."""
+        if self._still is not None:
+            return self._still
+        triangles = self._triangles
+        trees = list(self._trees)
+        if self._moving:
+            triangles = joined(triangles, self._gather(self._moving, time))
+            trees += self._grow(self._moving, triangles, len(self._triangles.corners))
+        materials = self._materials._replace(
+            emission=np.array([np.multiply(m.emission, m.brightness_at(time)) for m in self._kinds])
+        )
+        lights = Lights.of(triangles, self._kinds, self.lights, self._sky, time)
+        tables = Tables(triangles, materials, lights, self._sky, self.lift)
+        return Moment(tables, Trees(trees, triangles, materials, self.lift))
+
+    def corners_at(self, time: float) -> Float32:
+        """First corner and edges (T, 3, 3) of the triangles at `time` in seconds, in the order of `at`."""
+        if not self._moving:
+            return self._triangles.corners
+        return np.concatenate([self._triangles.corners, corners_of(self._moving, time)])
+
+    @property
+    def changes(self) -> bool:
+        """Whether anything but the camera moves or changes."""
+        return self._still is None
+
+    def _prepare(self) -> None:
+        """Gather all that never changes."""
+        self._kinds = list({id(i.material): i.material for i in self.instances}.values())
+        self._number = {id(material): number for number, material in enumerate(self._kinds)}
+        self._id = {id(instance): number for number, instance in enumerate(self.instances, 1)}
+        # Neighbours in the table share a tree: first those whose every point is solid.
+        ordered = sorted(self.instances, key=lambda instance: instance.masked)
+        still = [instance for instance in ordered if instance.motion is None]
+        self._moving = [instance for instance in ordered if instance.motion is not None]
+        self._materials = Materials.of(self._kinds)
+        self._sky = sky_table(self.sky)
+        # Positions carry an error of a few units in the last place of the largest coordinate, about 1e-7 of it.
+        self.lift = 1e-5 * max(float(np.abs(i.corners_at(0.0)).max()) for i in self.instances)
+        self._triangles = self._gather(still, 0.0)
+        self._trees = self._grow(still, self._triangles, 0)
+        self._still: Moment | None = None
+        lights_change = any(isinstance(light, PointLight) and light.motion is not None for light in self.lights)
+        if not (self._moving or lights_change or any(m.brightness is not None for m in self._kinds)):
+            lights = Lights.of(self._triangles, self._kinds, self.lights, self._sky, 0.0)
+            tables = Tables(self._triangles, self._materials, lights, self._sky, self.lift)
+            self._still = Moment(tables, Trees(self._trees, self._triangles, self._materials, self.lift))
+
+    def _gather(self, instances: Sequence[Instance], time: float) -> Triangles:
+        ids = [self._id[id(instance)] for instance in instances]
+        return Triangles.of(instances, ids, [self._number[id(i.material)] for i in instances], time)
+
+    def _grow(self, instances: Sequence[Instance], triangles: Triangles, first: int) -> list[Tree]:
+        """The trees over `instances`, whose triangles begin at `first` in the table: solid ones, masked ones."""
+        trees = []
+        for masked in (False, True):
+            count = sum(len(instance.corners) for instance in instances if instance.masked == masked)
+            if count:
+                trees.append(Tree(triangles.corners[first : first + count], first, masked=masked))
+            first += count
+        return trees
+
+    def _shines(self) -> bool:
+        sky = self.sky.image if isinstance(self.sky, Environment) else self.sky
+        lights = [light.irradiance if isinstance(light, Sun) else light.intensity for light in self.lights]
+        return bool(
+            (sky is not None and np.max(sky) > 0.0)
+            or any(max(light) > 0.0 for light in lights)
+            or any(max(instance.material.emission) > 0.0 for instance in self.instances)
+        )
+
+
+def _make(
+    instances: Sequence[Instance],
+    lights: Sequence[Sun | PointLight],
+    sky: Colour | Environment | None,
+    camera_path: CameraPath,
+) -> Scene:
+    return Scene(instances, lights=lights, sky=sky, camera_path=camera_path)
+
+
+def _check(instances: Sequence[Instance]) -> None:
+    if not instances:
+        raise SceneError("scene: expected at least one triangle, got none")
+    if not all(np.isfinite(instance.corners).all() for instance in instances):
+        raise SceneError("scene: expected finite vertex positions, got NaN or infinity")
+    if not all(instance.uv is None or np.isfinite(instance.uv).all() for instance in instances):
+        raise SceneError("scene: expected finite texture coordinates, got NaN or infinity")
 
 
 def _framing(instances: Sequence[Instance]) -> Camera:
     """A camera that sees the bounding sphere of everything, from the front, a little above."""
-    low = np.min([instance.corners.min((0, 1)) for instance in instances], axis=0)
-    high = np.max([instance.corners.max((0, 1)) for instance in instances], axis=0)
+    corners = [instance.corners_at(0.0) for instance in instances]
+    low = np.min([part.min((0, 1)) for part in corners], axis=0)
+    high = np.max([part.max((0, 1)) for part in corners], axis=0)
     middle, radius = (low + high) / 2.0, np.linalg.norm(high - low) / 2.0
     towards = np.array([0.35, 0.3, 1.0]) / np.linalg.norm([0.35, 0.3, 1.0])
     eye = middle + towards * max(radius, 1e-6) / np.sin(np.radians(Camera.fov_y / 2.0))

@@ -1,12 +1,16 @@
-"""All textures of a scene in one array, so that a batch of rays reads any number of them in one gather."""
+"""All textures of a scene in one array, and how a compiled loop reads them."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .compiled import compiled
+from .vec3 import Vec3
 from .vectors import Float32
 
 Image = NDArray[np.uint8]
@@ -21,45 +25,84 @@ def srgb_to_linear(values: NDArray[np.float64]) -> NDArray[np.float64]:
 LINEAR = srgb_to_linear(np.arange(256) / 255.0).astype(np.float32)
 
 
-class Textures:
-    """sRGB images (h, w, 3) uint8, row 0 on top, read with bilinear filtering and repeat wrap.
+class Textures(NamedTuple):
+    """sRGB images, row 0 on top, read with bilinear filtering and repeat wrap.
 
-    A texel is kept as one packed uint32, red lowest: a quarter of the memory of linear floats, and one gather.
+    A texel is one packed uint32, red lowest, opacity highest: a quarter of the memory of linear floats.
     """
 
-    def __init__(self, images: Sequence[Image]) -> None:
-        packed = [(image.astype(np.uint32) << np.array([0, 8, 16], np.uint32)).sum(2, np.uint32) for image in images]
-        self._heights = np.array([image.shape[0] for image in images], np.int32)
-        self._widths = np.array([image.shape[1] for image in images], np.int32)
-        self._starts = np.cumsum([0, *(image.size for image in packed)])[:-1]
-        self._texels = np.concatenate([image.ravel() for image in packed]) if images else np.empty(0, np.uint32)
+    texels: NDArray[np.uint32]
+    starts: NDArray[np.int64]
+    widths: NDArray[np.int64]
+    heights: NDArray[np.int64]
+    linear: Float32
 
-    def sample(self, texture: NDArray[np.int32], uv: Float32) -> Float32:
-        """Linear colour (3, N) of textures `texture` (N,) at `uv` (2, N); v points up, as in trimesh."""
-        width, height = self._widths.take(texture), self._heights.take(texture)
-        start = self._starts.take(texture)
-        left, right, fx = _neighbours(uv[0], width)
-        upper, lower, fy = _neighbours(1 - uv[1], height)
-        upper, lower = start + upper * width, start + lower * width
-        top = _mix(self._texels.take(upper + left), self._texels.take(upper + right), fx)
-        top += fy * (_mix(self._texels.take(lower + left), self._texels.take(lower + right), fx) - top)
-        return top
-
-
-def _neighbours(coordinate: Float32, size: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDArray[np.int32], Float32]:
-    """The two texels of one axis around a repeating texture `coordinate`, and the weight of the second."""
-    position = coordinate - np.floor(coordinate)
-    position *= size
-    position -= np.float32(0.5)
-    floor = np.floor(position)
-    first = floor.astype(np.int32)
-    return first % size, (first + 1) % size, position - floor
+    @classmethod
+    def of(cls, images: Sequence[Image]) -> Textures:
+        """Pack images (h, w, 3) or, with opacity, (h, w, 4) uint8."""
+        packed = [_pack(image).ravel() for image in images]
+        return cls(
+            np.concatenate([*packed, np.zeros(0, np.uint32)]),
+            np.cumsum([0, *(len(texels) for texels in packed)])[:-1].astype(np.int64),
+            np.array([image.shape[1] for image in images], np.int64),
+            np.array([image.shape[0] for image in images], np.int64),
+            LINEAR,
+        )
 
 
-def _mix(first: NDArray[np.uint32], second: NDArray[np.uint32], weight: Float32) -> Float32:
-    """Decode two batches of packed texels and interpolate between them: (3, N)."""
-    result = np.empty((3, len(weight)), np.float32)
-    for channel in range(3):
-        a = LINEAR.take((first >> (8 * channel)) & 255)
-        result[channel] = a + weight * (LINEAR.take((second >> (8 * channel)) & 255) - a)
-    return result
+def _pack(image: Image) -> NDArray[np.uint32]:
+    opaque = np.full((*image.shape[:2], 1), 255, np.uint8)
+    channels = np.concatenate([image, opaque], axis=2)[..., :4]
+    return np.ascontiguousarray(channels).view("<u4")[..., 0]
+
+
+@compiled
+def texture_colour(textures: Textures, texture: int, u: float, v: float) -> Vec3:
+    """Linear colour of a texture at (u, v); v points up, as in trimesh."""
+    first, second, third, fourth, fx, fy = _texels(textures, texture, u, v)
+    linear = textures.linear
+    red = _mix(linear[first & 255], linear[second & 255], linear[third & 255], linear[fourth & 255], fx, fy)
+    first, second, third, fourth = first >> 8, second >> 8, third >> 8, fourth >> 8
+    green = _mix(linear[first & 255], linear[second & 255], linear[third & 255], linear[fourth & 255], fx, fy)
+    first, second, third, fourth = first >> 8, second >> 8, third >> 8, fourth >> 8
+    blue = _mix(linear[first & 255], linear[second & 255], linear[third & 255], linear[fourth & 255], fx, fy)
+    return red, green, blue
+
+
+@compiled
+def texture_opacity(textures: Textures, texture: int, u: float, v: float) -> float:
+    """Opacity of a texture at (u, v), 0..1."""
+    first, second, third, fourth, fx, fy = _texels(textures, texture, u, v)
+    return _mix(first >> 24, second >> 24, third >> 24, fourth >> 24, fx, fy) / 255.0
+
+
+@compiled
+def _texels(
+    textures: Textures, texture: int, u: float, v: float
+) -> tuple[np.uint32, np.uint32, np.uint32, np.uint32, float, float]:
+    """The four texels around a point, upper left, upper right, lower left, lower right, and where it lies between."""
+    width, height, start = textures.widths[texture], textures.heights[texture], textures.starts[texture]
+    x, y = (u - math.floor(u)) * width - 0.5, (math.ceil(v) - v) * height - 0.5
+    left, top = math.floor(x), math.floor(y)
+    fx, fy = x - left, y - top
+    # Half a texel beyond either edge at most: no division.
+    column, row = int(left), int(top)
+    right, below = column + 1, row + 1
+    if column < 0:
+        column += width
+    if row < 0:
+        row += height
+    if right >= width:
+        right -= width
+    if below >= height:
+        below -= height
+    upper, lower = start + row * width, start + below * width
+    texels = textures.texels
+    return texels[upper + column], texels[upper + right], texels[lower + column], texels[lower + right], fx, fy
+
+
+@compiled
+def _mix(first: float, second: float, third: float, fourth: float, fx: float, fy: float) -> float:
+    top = first + fx * (second - first)
+    bottom = third + fx * (fourth - third)
+    return top + fy * (bottom - top)

@@ -3,10 +3,19 @@
 from __future__ import annotations
 
 import math
+from typing import Any
+
+from numpy.typing import NDArray
 
 from .compiled import compiled
 
 Vec3 = tuple[float, float, float]
+
+
+@compiled
+def row(rows: NDArray[Any], index: int) -> Vec3:
+    """Row `index` of an array (N, 3), in double precision."""
+    return float(rows[index, 0]), float(rows[index, 1]), float(rows[index, 2])
 
 
 @compiled

@@ -49,22 +49,21 @@ def render(
       svgf-cl render cornell --frames 4 --size 320x180 --reference-spp 256 -o out/box
     """
     require_tracer()
-    from tracer import Camera, CameraPath, render_reference, render_sequence
+    from tracer import Camera, CameraPath, Shot, render_reference, render_sequence
 
     shape, light = parse_size(size), parse_rgb(sky) if sky else None
     cameras = [Camera.parse(text) for text in camera]
     world = open_scene(scene, light)
-    path = CameraPath.through(cameras) if cameras else world.camera_path
+    shot = Shot(world, shape, frames, CameraPath.through(cameras) if cameras else None)
     folder, written = make_folder(output), ("frame", "reference") if reference_spp else ("frame",)
     check_leftovers(folder, [frame_path(folder, n, stem) for stem in written for n in range(frames)])
-    noisy = render_sequence(world, path, shape, frames, spp, jitter, seed, bounces)
+    noisy = render_sequence(shot, spp=spp, seed=seed, jitter=jitter, bounces=bounces)
     for number, frame in enumerate(tracked(noisy, frames, "rendering")):
         write_frame(frame_path(folder, number), frame)
     with progress_bar("references", total=frames * reference_spp) as advance:
         for number in range(frames if reference_spp else 0):
-            view = path.at_frame(number, frames)
             picture = render_reference(
-                world, view, shape, spp=reference_spp, seed=seed, bounces=bounces, progress=lambda *_: advance()
+                shot, number, spp=reference_spp, seed=seed, bounces=bounces, progress=lambda *_: advance()
             )
             write_picture(frame_path(folder, number, "reference"), picture)
     print(f"{frames} frames in {output}")

@@ -1,0 +1,56 @@
+"""The G-buffer: what a denoiser wants to know of the first surface a pixel shows."""
+
+from __future__ import annotations
+
+from .bsdf import albedo, reflection
+from .camera import Lens, project
+from .compiled import compiled
+from .geometry import Surface, interpolated
+from .materials import base_colour
+from .paths import Before, Features
+from .scene import Tables
+from .vec3 import Vec3, dot, subtract
+
+
+@compiled
+def describe(
+    tables: Tables,
+    lens: Lens,
+    before: Before,
+    surface: Surface,
+    triangle: int,
+    b: float,
+    c: float,
+    direction: Vec3,
+    pixel: int,
+    features: Features,
+) -> None:
+    """Write what is known of the surface, met at `b`, `c` of `triangle`, by a ray along `direction`."""
+    materials, material = tables.materials, surface.material
+    if materials.transmissive[material]:
+        features.roughness[pixel] = 0.0
+    else:
+        base = base_colour(materials, material, surface.u, surface.v)
+        metallic, roughness = materials.metallic[material], materials.roughness[material]
+        reflectance = albedo(
+            reflection(base, metallic, roughness, materials.ior[material]), min(-dot(surface.normal, direction), 1.0)
+        )
+        for channel in range(3):
+            features.albedo[pixel, channel] = reflectance[channel]
+        features.roughness[pixel] = roughness
+    now = project(lens, subtract(surface.point, lens.position))
+    previous = interpolated(before.corners, triangle, b, c)
+    then = project(before.lens, subtract(previous, before.lens.position))
+    for axis in range(3):
+        features.normal[pixel, axis] = surface.normal[axis]
+        features.motion[pixel, axis] = then[axis] - now[axis]
+    features.depth[pixel] = now[2]
+    features.id[pixel] = tables.triangles.instance[triangle]
+
+
+@compiled
+def describe_outside(lens: Lens, before: Before, direction: Vec3, pixel: int, features: Features) -> None:
+    """Write the motion of a point infinitely far away; all else is as it was where nothing was hit."""
+    now, then = project(lens, direction), project(before.lens, direction)
+    for axis in range(2):
+        features.motion[pixel, axis] = then[axis] - now[axis]

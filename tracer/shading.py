@@ -1,0 +1,316 @@
+"""The compiled loops between two calls of Embree: they start paths, shade what they meet, and sum up their light."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .bsdf import (
+    Reflection,
+    diffuse_density,
+    evaluate_diffuse,
+    evaluate_specular,
+    fresnel_dielectric,
+    reflection,
+    refract,
+    sample_diffuse,
+    sample_specular,
+    specular_density,
+    specular_share,
+)
+from .camera import Lens, ray_through
+from .compiled import compiled
+from .gbuffer import describe, describe_outside
+from .geometry import Surface, surface_at
+from .light_sampling import lamp_density, outside_density, outside_radiance, sample_light
+from .materials import base_colour, emitted_radiance
+from .paths import DIFFUSE, EMISSION, INDIRECT_DIFFUSE, SPECULAR, Before, Draws, Features, Paths, ShadowRays
+from .sampling import Random4, random4
+from .scene import Tables
+from .trees import FAR, MISS, Hits
+from .vec3 import Vec3, add, dot, multiply, row, scale, to_local, to_world
+from .vectors import Float32, Float64
+
+# Random draws of a path: its place in the pixel and the shutter's time, its place on the lens, two at each surface.
+PIXEL_DRAW, LENS_DRAW, FIRST_SURFACE_DRAW = 0, 1, 2
+
+BLACK = (0.0, 0.0, 0.0)
+
+
+@compiled
+def spread(draws: Draws, positions: Float64) -> None:
+    """Move image positions (N, 2) within the pixel's square at random, by [-0.5, 0.5) each way."""
+    for index in range(len(positions)):
+        u = random4(draws.key, draws.pixels[index], draws.sample, PIXEL_DRAW)
+        positions[index, 0] += u[0] - 0.5
+        positions[index, 1] += u[1] - 0.5
+
+
+@compiled
+def pick_moments(draws: Draws, count: int, moments: NDArray[np.int64]) -> None:
+    """Pick one of `count` moments for each path: `moments` (N,)."""
+    for index in range(len(moments)):
+        moments[index] = int(random4(draws.key, draws.pixels[index], draws.sample, PIXEL_DRAW)[2] * count)
+
+
+@compiled
+def start_paths(lens: Lens, draws: Draws, positions: Float64, scatterings: int, paths: Paths) -> None:
+    """Start a path through each image position (x, y) of `positions` (N, 2)."""
+    for index in range(len(positions)):
+        u = random4(draws.key, draws.pixels[index], draws.sample, LENS_DRAW)
+        origin, direction = ray_through(lens, positions[index, 0], positions[index, 1], u[0], u[1])
+        _put(paths, index, origin, direction, (1.0, 1.0, 1.0), 0.0)
+        paths.pixel[index], paths.lobe[index], paths.scatterings[index] = index, DIFFUSE, scatterings
+
+
+@compiled
+def deposit(light: Float32, rays: ShadowRays, blocked: NDArray[np.bool_], first: int) -> None:
+    """Add what unblocked shadow rays bring to `light`, counted as `first` and the kind after it."""
+    for index in range(len(blocked)):
+        if not blocked[index]:
+            pixel = rays.pixel[index]
+            for lobe in range(2):
+                for channel in range(3):
+                    light[pixel, first + lobe, channel] += rays.light[index, lobe, channel]
+
+
+@compiled
+def shade(
+    tables: Tables,
+    lens: Lens,
+    before: Before,
+    draws: Draws,
+    depth: int,
+    paths: Paths,
+    hits: Hits,
+    light: Float32,
+    features: Features,
+    shadows: ShadowRays,
+    ahead: Paths,
+) -> tuple[int, int]:
+    """Shade what paths have met after passing `depth` surfaces.
+
+    What shines there is added to `light`; paths that may be scattered send a ray to a light, put into `shadows`, and
+    go on, put into `ahead`. Returns how many of both there are.
+    """
+    shadow_count = ahead_count = 0
+    for index in range(len(paths.pixel)):
+        pixel, lobe = paths.pixel[index], paths.lobe[index]
+        direction, throughput = row(paths.direction, index), row(paths.throughput, index)
+        density, triangle = float(paths.density[index]), hits.triangle[index]
+        kind = EMISSION if depth == 0 else lobe if depth == 1 else INDIRECT_DIFFUSE + lobe
+        if triangle == MISS:
+            shine = outside_radiance(tables.lights, tables.sky, direction)
+            weight = _weight(density, outside_density(tables.lights, tables.sky, direction)) if density > 0.0 else 1.0
+            _add(light, pixel, kind, multiply(throughput, scale(shine, weight)))
+            if len(features.depth):
+                if depth == 0:
+                    describe_outside(lens, before, direction, pixel, features)
+                elif depth == 1:
+                    features.hit_distance[pixel, lobe] = np.inf
+            continue
+        b, c = float(hits.b[index]), float(hits.c[index])
+        surface = surface_at(tables.triangles, triangle, b, c, direction)
+        material = surface.material
+        if surface.front or tables.materials.two_sided[material]:
+            shine = emitted_radiance(tables.materials, material, surface.u, surface.v)
+            if max(shine[0], shine[1], shine[2]) > 0.0:
+                weight = 1.0
+                if density > 0.0:
+                    cosine = abs(dot(surface.face_normal, direction))
+                    weight = _weight(density, lamp_density(tables.lights, material, cosine, hits.distance[index]))
+                _add(light, pixel, kind, multiply(throughput, scale(shine, weight)))
+        if len(features.depth):
+            if depth == 0:
+                describe(tables, lens, before, surface, triangle, b, c, direction, pixel, features)
+            elif depth == 1:
+                features.hit_distance[pixel, lobe] = hits.distance[index]
+        if paths.scatterings[index] == 0:
+            continue
+        draw = FIRST_SURFACE_DRAW + 2 * depth
+        u = random4(draws.key, draws.pixels[pixel], draws.sample, draw)
+        if tables.materials.transmissive[material]:
+            ahead_count = _pass_glass(
+                tables, surface, direction, throughput, u, paths, index, depth, ahead, ahead_count
+            )
+            continue
+        to_light = random4(draws.key, draws.pixels[pixel], draws.sample, draw + 1)
+        base = base_colour(tables.materials, material, surface.u, surface.v)
+        metallic, roughness = tables.materials.metallic[material], tables.materials.roughness[material]
+        surface_reflection = reflection(base, metallic, roughness, tables.materials.ior[material])
+        cos_o = min(-dot(surface.normal, direction), 1.0)
+        share = specular_share(surface_reflection, cos_o)
+        if len(tables.lights.kinds):
+            shadow_count = _aim(
+                tables,
+                surface,
+                surface_reflection,
+                share,
+                direction,
+                throughput,
+                to_light,
+                depth,
+                lobe,
+                pixel,
+                shadows,
+                shadow_count,
+            )
+        ahead_count = _scatter(
+            surface,
+            surface_reflection,
+            share,
+            direction,
+            throughput,
+            u,
+            tables.lift,
+            paths,
+            index,
+            depth,
+            ahead,
+            ahead_count,
+        )
+    return shadow_count, ahead_count
+
+
+@compiled
+def _aim(
+    tables: Tables,
+    surface: Surface,
+    r: Reflection,
+    share: float,
+    direction: Vec3,
+    throughput: Vec3,
+    u: Random4,
+    depth: int,
+    lobe: int,
+    pixel: int,
+    shadows: ShadowRays,
+    count: int,
+) -> int:
+    """Send a ray from the surface to a light, unless that cannot shine on it; returns the new count of such rays."""
+    origin = add(surface.point, scale(surface.face_normal, tables.lift))
+    sample = sample_light(tables.lights, tables.triangles, tables.materials, tables.sky, origin, u)
+    if (
+        dot(sample.direction, surface.face_normal) <= 0.0
+        or max(sample.light[0], sample.light[1], sample.light[2]) <= 0.0
+    ):
+        return count
+    wo, wi = to_local(scale(direction, -1.0), surface.normal), to_local(sample.direction, surface.normal)
+    if wi[2] <= 0.0:
+        return count
+    light = multiply(throughput, sample.light)
+    diffuse, specular = evaluate_diffuse(r, wo, wi), BLACK
+    if share < 1.0:
+        weight = _weight(sample.density, (1.0 - share) * diffuse_density(wi)) if sample.density > 0.0 else 1.0
+        diffuse = scale(diffuse, weight)
+    if share > 0.0:
+        weight = _weight(sample.density, share * specular_density(r, wo, wi)) if sample.density > 0.0 else 1.0
+        specular = scale(evaluate_specular(r, wo, wi), weight)
+    if depth > 0:
+        total = add(diffuse, specular)
+        diffuse, specular = (total, BLACK) if lobe == DIFFUSE else (BLACK, total)
+    for channel in range(3):
+        shadows.origin[count, channel] = origin[channel]
+        shadows.direction[count, channel] = sample.direction[channel]
+        shadows.light[count, DIFFUSE, channel] = light[channel] * diffuse[channel]
+        shadows.light[count, SPECULAR, channel] = light[channel] * specular[channel]
+    # End in front of the lamp, as far as rays start in front of a surface.
+    shadows.distance[count] = min(sample.distance * (1.0 - 1e-4) - tables.lift, FAR)
+    shadows.pixel[count] = pixel
+    return count + 1
+
+
+@compiled
+def _scatter(
+    surface: Surface,
+    r: Reflection,
+    share: float,
+    direction: Vec3,
+    throughput: Vec3,
+    u: Random4,
+    lift: float,
+    paths: Paths,
+    index: int,
+    depth: int,
+    ahead: Paths,
+    count: int,
+) -> int:
+    """Draw a direction from one lobe and go on along it, unless it brings nothing; returns the new count of paths."""
+    wo = to_local(scale(direction, -1.0), surface.normal)
+    if u[0] < share:
+        lobe, wi = SPECULAR, sample_specular(r, wo, u[1], u[2])
+        density = share * specular_density(r, wo, wi)
+        reflected = evaluate_specular(r, wo, wi)
+    else:
+        lobe, wi = DIFFUSE, sample_diffuse(u[1], u[2])
+        density = (1.0 - share) * diffuse_density(wi)
+        reflected = evaluate_diffuse(r, wo, wi)
+    onward = to_world(wi, surface.normal)
+    # The shading normal can send a direction below the true surface, where no light comes from.
+    if density <= 0.0 or dot(onward, surface.face_normal) <= 0.0:
+        return count
+    throughput = multiply(throughput, scale(reflected, 1.0 / density))
+    if max(throughput[0], throughput[1], throughput[2]) <= 0.0:
+        return count
+    _put(ahead, count, add(surface.point, scale(surface.face_normal, lift)), onward, throughput, density)
+    ahead.pixel[count] = paths.pixel[index]
+    ahead.lobe[count] = lobe if depth == 0 else paths.lobe[index]
+    ahead.scatterings[count] = paths.scatterings[index] - 1
+    return count + 1
+
+
+@compiled
+def _pass_glass(
+    tables: Tables,
+    surface: Surface,
+    direction: Vec3,
+    throughput: Vec3,
+    u: Random4,
+    paths: Paths,
+    index: int,
+    depth: int,
+    ahead: Paths,
+    count: int,
+) -> int:
+    """Reflect or refract a path at smooth glass; returns the new count of paths."""
+    ior = tables.materials.ior[surface.material]
+    eta = ior if surface.front else 1.0 / ior
+    wo = to_local(scale(direction, -1.0), surface.normal)
+    wi, lift = (-wo[0], -wo[1], wo[2]), tables.lift
+    if u[0] >= fresnel_dielectric(wo[2], eta):
+        wi, lift = refract(wo, eta)[0], -tables.lift
+        if surface.front:  # the colour counts once for the way in and out
+            throughput = multiply(throughput, base_colour(tables.materials, surface.material, surface.u, surface.v))
+    onward = to_world(wi, surface.normal)
+    if dot(onward, surface.face_normal) * lift <= 0.0:
+        return count
+    _put(ahead, count, add(surface.point, scale(surface.face_normal, lift)), onward, throughput, 0.0)
+    ahead.pixel[count] = paths.pixel[index]
+    ahead.lobe[count] = SPECULAR if depth == 0 else paths.lobe[index]
+    ahead.scatterings[count] = paths.scatterings[index]
+    return count + 1
+
+
+@compiled
+def _put(paths: Paths, index: int, origin: Vec3, direction: Vec3, throughput: Vec3, density: float) -> None:
+    for axis in range(3):
+        paths.origin[index, axis] = origin[axis]
+        paths.direction[index, axis] = direction[axis]
+        paths.throughput[index, axis] = throughput[axis]
+    paths.density[index] = density
+
+
+@compiled
+def _add(light: Float32, pixel: int, kind: int, radiance: Vec3) -> None:
+    for channel in range(3):
+        light[pixel, kind, channel] += radiance[channel]
+
+
+@compiled
+def _weight(density: float, other: float) -> float:
+    """The weight of an estimate drawn with `density` where another could have been drawn with density `other`.
+
+    Source: the power heuristic of Veach, Robust Monte Carlo Methods for Light Transport Simulation, 1997, 9.2.4.
+    """
+    ratio = other / density
+    return 1.0 / (1.0 + ratio * ratio)

@@ -1,0 +1,165 @@
+"""Rays against triangles: Embree's trees, and the points with an alpha mask that rays pass through."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from embreex.mesh_construction import TriangleMesh
+from embreex.rtcore_scene import EmbreeScene
+from numpy.typing import NDArray
+
+from .compiled import compiled
+from .geometry import Triangles, texture_coordinates
+from .materials import Materials, is_solid
+from .vectors import Float32
+
+MISS = -1
+FAR = np.float32(1e37)  # Embree's own word for nowhere
+
+
+class Hits(NamedTuple):
+    """What each of a batch of N rays met first: the triangle's number or `MISS`, barycentric coordinates, distance.
+
+    Coordinates and distance of a miss mean nothing.
+    """
+
+    triangle: NDArray[np.int32]
+    b: Float32
+    c: Float32
+    distance: Float32
+
+
+class Tree:
+    """Embree's tree over some neighbouring triangles of a scene.
+
+    Parameters
+    ----------
+    corners : (T, 3, 3) float32
+        First corner and two edges of each.
+    first : int
+        Number of the first of them in the scene.
+    masked : bool
+        Rays may pass through their surfaces.
+    """
+
+    def __init__(self, corners: Float32, first: int, *, masked: bool) -> None:
+        self.first, self.masked = first, masked
+        self._embree = EmbreeScene()
+        vertices = corners.copy()
+        vertices[:, 1:] += corners[:, :1]
+        TriangleMesh(self._embree, vertices)
+        # Embree builds its tree at the first query: not in several threads at once.
+        self.blocked(np.zeros((1, 3), np.float32), np.ones((1, 3), np.float32), np.ones(1, np.float32))
+
+    def nearest(self, origin: Float32, direction: Float32, distance: Float32) -> Hits:
+        """The first hits of rays (N, 3) within `distance` (N,), which becomes that of the hits."""
+        found = self._embree.run(origin, direction, dists=distance, output=1)
+        return Hits(found["primID"], found["u"], found["v"], distance)
+
+    def blocked(self, origin: Float32, direction: Float32, distance: Float32) -> NDArray[np.bool_]:
+        """Whether any triangle lies within `distance` (N,), which is spoilt, along each ray (N, 3)."""
+        blocked: NDArray[np.bool_] = self._embree.run(origin, direction, dists=distance, query="OCCLUDED") == 0
+        return blocked
+
+
+class Trees:
+    """Every triangle of a scene at one time, to be asked what rays meet.
+
+    Parameters
+    ----------
+    trees : sequence of Tree
+        Together they hold all of `triangles`.
+    triangles : Triangles
+    materials : Materials
+        They tell where a masked surface is solid.
+    lift : float
+        How far beyond a point, in scene units, a ray is sure to have left it.
+    """
+
+    def __init__(self, trees: Sequence[Tree], triangles: Triangles, materials: Materials, lift: float) -> None:
+        self.trees, self.triangles, self.materials, self.lift = tuple(trees), triangles, materials, lift
+
+    def intersect(self, origin: Float32, direction: Float32) -> Hits:
+        """The first solid point on each ray from `origin` (N, 3) along the unit vectors `direction` (N, 3)."""
+        count = len(origin)
+        distance = np.full(count, FAR, np.float32)
+        hits = Hits(np.full(count, MISS, np.int32), np.zeros(count, np.float32), np.zeros(count, np.float32), distance)
+        for number, tree in enumerate(self.trees):
+            if tree.masked:
+                self._intersect_masked(tree, origin, direction, hits)
+            elif number:
+                _merge(hits, tree.nearest(origin, direction, distance), tree.first)
+            else:
+                hits = tree.nearest(origin, direction, distance)
+        return hits
+
+    def occluded(self, origin: Float32, direction: Float32, distance: Float32) -> NDArray[np.bool_]:
+        """Whether a solid point lies within `distance` (N,), which is spoilt, on each ray from `origin` (N, 3)."""
+        result = np.zeros(len(origin), np.bool_)
+        for number, tree in enumerate(self.trees):
+            if number == 0 and not tree.masked:
+                result = tree.blocked(origin, direction, distance)
+                continue
+            free = np.flatnonzero(~result)
+            rays, ahead, reach = origin[free], direction[free], distance[free]
+            if tree.masked:
+                hits = Hits(np.full(len(free), MISS, np.int32), np.empty_like(reach), np.empty_like(reach), reach)
+                self._intersect_masked(tree, rays, ahead, hits)
+                result[free] = hits.triangle != MISS
+            else:
+                result[free] = tree.blocked(rays, ahead, reach)
+        return result
+
+    def _intersect_masked(self, tree: Tree, origin: Float32, direction: Float32, hits: Hits) -> None:
+        """Put the tree's solid points into `hits` where they are nearer; a ray goes on from every other point."""
+        ray = np.arange(len(origin), dtype=np.int32)
+        travelled = np.zeros(len(origin), np.float32)
+        while len(ray):
+            found = tree.nearest(origin, direction, hits.distance[ray] - travelled)
+            passed = np.empty(len(ray), np.int32)
+            passed = passed[: _settle(self.triangles, self.materials, found, tree.first, ray, travelled, hits, passed)]
+            step = found.distance[passed] + np.float32(self.lift)
+            ray, travelled = ray[passed], travelled[passed] + step
+            direction = direction[passed]
+            origin = origin[passed] + step[:, None] * direction
+
+
+@compiled
+def _settle(
+    triangles: Triangles,
+    materials: Materials,
+    found: Hits,
+    first: int,
+    ray: NDArray[np.int32],
+    travelled: Float32,
+    hits: Hits,
+    passed: NDArray[np.int32],
+) -> int:
+    """Put solid points into `hits`; the rays that have met a point that is none are put into `passed`, and counted."""
+    count = 0
+    for index in range(len(ray)):
+        if found.triangle[index] == MISS:
+            continue
+        triangle = first + found.triangle[index]
+        b, c = found.b[index], found.c[index]
+        u, v = texture_coordinates(triangles, triangle, b, c)
+        if is_solid(materials, triangles.material[triangle], u, v):
+            target = ray[index]
+            hits.triangle[target] = triangle
+            hits.b[target], hits.c[target] = b, c
+            hits.distance[target] = travelled[index] + found.distance[index]
+        else:
+            passed[count] = index
+            count += 1
+    return count
+
+
+@compiled
+def _merge(hits: Hits, nearer: Hits, first: int) -> None:
+    """Put what a further tree found into `hits`; it has looked no further than these."""
+    for ray in range(len(nearer.triangle)):
+        if nearer.triangle[ray] != MISS:
+            hits.triangle[ray] = first + nearer.triangle[ray]
+            hits.b[ray], hits.c[ray] = nearer.b[ray], nearer.c[ray]
