@@ -28,6 +28,8 @@ CHANNELS: dict[str, tuple[int, ...]] = {
     "hit_distance": (2,),
 }
 REQUIRED = ("normal", "depth", "motion")
+# What the denoiser checks and leaves alone: renderers write it, and filters to come will want it.
+CARRIED = ("diffuse", "specular", "roughness", "hit_distance")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -57,8 +59,8 @@ class Frame:
         Reflected radiance split in two signals that are filtered apart; both or neither.
         ``color = direct + indirect + emission``, and `color` is not read.
     diffuse, specular : (H, W, 3) float32, optional
-        Reflected radiance split by the lobe of the first surface: ``color = diffuse + specular + emission``. These and
-        the next two are stored beside the others for filters to come; the denoiser does not read them.
+        Reflected radiance split by the lobe of the first surface: ``color = diffuse + specular + emission``. The
+        denoiser does not read these and the next two; they are carried for filters to come.
     roughness : (H, W) float32, optional
         Perceptual roughness of the first surface, 0 (mirror) to 1; 1 where nothing was hit.
     hit_distance : (H, W, 2) float32, optional

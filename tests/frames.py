@@ -58,6 +58,10 @@ def bumpy(rng: np.random.Generator, shape: Shape = SHAPE) -> Frame:
         "direct": light[0],
         "indirect": light[1],
         "emission": light[2] * (rng.random((*shape, 1)) < 0.05),
+        "diffuse": 0.75 * light[:2].sum(axis=0),
+        "specular": 0.25 * light[:2].sum(axis=0),
+        "roughness": 0.5,
+        "hit_distance": (1.0, 2.0),
     }
     return wall(shape, **fields)
 

@@ -15,7 +15,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from svgf_cl import Denoiser, Frame, Settings, SvgfError
 from svgf_cl.accuracy import DECISION, largest_channel, relative_error
-from svgf_cl.frame import CHANNELS, Shape
+from svgf_cl.frame import CARRIED, CHANNELS, Shape
 from svgf_cl.passes import Inputs, pipeline
 from svgf_cl.planes import HALO, Layout
 from svgf_cl.reference import Reference
@@ -159,7 +159,7 @@ def steady() -> np.ndarray:
     return feed(*[GOOD] * 60, **BRISK)[0]
 
 
-@pytest.mark.parametrize("name", [name for name in CHANNELS if name not in ("id", "color")])
+@pytest.mark.parametrize("name", [name for name in CHANNELS if name not in ("id", "color", *CARRIED)])
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1e30, -1e30, 3e38], ids=str)
 @every_part
 class TestFaultyInput:

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from svgf_cl import Frame, FrameError, SequenceError
+from svgf_cl.frame import CARRIED, CHANNELS
 from svgf_cl.sequence import (
     CHANNEL_NAMES,
     MAX_ID,
@@ -144,12 +145,13 @@ def test_an_id_that_is_no_whole_number_is_refused(tmp_path: Path, value: float) 
 
 
 @pytest.mark.parametrize(
-    "channel", [names[-1] for names in CHANNEL_NAMES.values() if names[-1] not in ("id", "motion.Z")]
+    "channel", [names[-1] for names in CHANNEL_NAMES.values() if names[-1] not in ("id", "motion.Z", "roughness")]
 )
 def test_an_absent_channel_is_named_with_those_found(tmp_path: Path, channel: str) -> None:
     path = tmp_path / "frame.0000.exr"
-    rest = {name: np.ones((3, 4, 3), np.float32) for name in ("albedo", "emission", "direct", "indirect")}
-    write_frame(path, plain_frame(**rest))
+    optional = ("albedo", "emission", "direct", "indirect", *CARRIED)
+    fields = {name: np.ones((3, 4, *filter(None, CHANNELS[name])), np.float32) for name in optional}
+    write_frame(path, plain_frame(**fields))
     planes = read_channels(path)
     del planes[channel]
     write_channels(path, planes)
