@@ -27,9 +27,10 @@ bench: device  ## time every kernel on every device, beside rival and error; rep
 	-$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[dev,cpu,oidn]'
 	$(BIN)/python -m benchmarks --output out/bench
 
-docs: demo  ## make docs/accuracy.md and the picture of README again
+docs: demo  ## make docs/accuracy.md, docs/scene_description.md and the picture of README again
 	$(BIN)/python benchmarks/accuracy.py
 	$(BIN)/python scripts/picture.py
+	$(BIN)/python scripts/scene_description.py
 
 clean:  ## remove what the other targets made
 	rm -rf .venv build *.egg-info .*_cache

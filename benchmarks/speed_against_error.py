@@ -33,7 +33,7 @@ from benchmarks.variants import VARIANTS
 from svgf_cl import devices
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import parse_rgb, parse_size
-from svgf_cl.cli.render import CAMERA_HELP, SKY_HELP
+from svgf_cl.cli.render import CAMERA_HELP
 from svgf_cl.files import make_folder
 from svgf_cl.frame import extent
 from svgf_cl.metrics import require_flip
@@ -50,7 +50,7 @@ def speed_against_error(
         str, typer.Option(metavar="SCENE", help="A glTF, GLB or OBJ file, or the name of a built-in scene.")
     ] = "cornell",
     camera: Annotated[list[str], typer.Option(metavar="TEXT", help=CAMERA_HELP)] = [],  # noqa: B006  # never changed
-    sky: Annotated[str | None, typer.Option(metavar="R,G,B", help=SKY_HELP)] = None,
+    sky: Annotated[str | None, typer.Option(metavar="R,G,B", help="Light outside: linear radiance, as 0.4,0.5,0.7.")] = None,
     spp: Annotated[
         int, typer.Option(metavar="N", min=2 * PART, help=f"Samples per pixel of the truth, a multiple of {2 * PART}.")
     ] = 512,

@@ -4,18 +4,22 @@ from .builtin import BUILTIN, builtin_scene
 from .camera import Camera, CameraPath
 from .errors import SceneError
 from .loading import load_scene
+from .panorama import load_environment
 from .render import render_frame, render_reference, render_sequence
 from .scene import Scene
 from .shot import Shot
+from .sky import Environment
 
 __all__ = [
     "BUILTIN",
     "Camera",
     "CameraPath",
+    "Environment",
     "Scene",
     "SceneError",
     "Shot",
     "builtin_scene",
+    "load_environment",
     "load_scene",
     "render_frame",
     "render_reference",

@@ -59,7 +59,9 @@ def parse_rgb(text: str) -> tuple[float, float, float]:
     try:
         red, green, blue = (float(part) for part in text.split(","))
     except ValueError as error:
-        raise SvgfError(f"--sky: expected three numbers such as 0.4,0.5,0.7, got {text!r}") from error
+        raise SvgfError(
+            f"--sky: expected three numbers such as 0.4,0.5,0.7 or a file .hdr or .exr, got {text!r}"
+        ) from error
     if not all(0 <= value < float("inf") for value in (red, green, blue)):
         raise SvgfError(f"--sky: expected finite radiance >= 0, got {text!r}")
     return red, green, blue

@@ -7,8 +7,8 @@ from typing import Annotated
 import typer
 
 from svgf_cl.cli.console import progress_bar, tracked
-from svgf_cl.cli.options import Output, Size, parse_rgb, parse_size
-from svgf_cl.cli.scenes import open_scene, require_tracer
+from svgf_cl.cli.options import Output, Size, parse_size
+from svgf_cl.cli.scenes import open_scene, read_sky, require_tracer
 from svgf_cl.files import make_folder
 from svgf_cl.sequence import check_leftovers, frame_path, write_frame, write_picture
 
@@ -17,19 +17,23 @@ CAMERA_HELP = (
     "px,py,pz/lx,ly,lz/fov[/ux,uy,uz]. Given several times, the camera moves from one to the next. "
     "By default the scene's own."
 )
-SKY_HELP = "Light from everywhere outside the scene: linear radiance, for example 0.4,0.5,0.7."
+SKY_HELP = (
+    "Light from everywhere outside the scene: linear radiance, for example 0.4,0.5,0.7, or a .hdr or .exr image of all "
+    "directions. In place of the scene's own sky."
+)
+SCENE_HELP = "A folder with a scene.json; a glTF, GLB or OBJ file; or the name of a built-in scene: cornell."
+ALTERNATIVE_HELP = "Light the scene by the alternative_lights of its scene.json."
 
 
 def render(
-    scene: Annotated[
-        str, typer.Argument(metavar="SCENE", help="A glTF, GLB or OBJ file, or the name of a built-in scene: cornell.")
-    ],
+    scene: Annotated[str, typer.Argument(metavar="SCENE", help=SCENE_HELP)],
     output: Output,
     frames: Annotated[int, typer.Option(metavar="N", min=1, help="Number of frames.")] = 24,
     spp: Annotated[int, typer.Option(metavar="N", min=1, help="Samples per pixel of a frame.")] = 1,
     size: Size = "640x360",
     camera: Annotated[list[str], typer.Option(metavar="TEXT", help=CAMERA_HELP)] = [],  # noqa: B006
-    sky: Annotated[str | None, typer.Option(metavar="R,G,B", help=SKY_HELP)] = None,
+    sky: Annotated[str | None, typer.Option(metavar="R,G,B|FILE", help=SKY_HELP)] = None,
+    alternative_lights: Annotated[bool, typer.Option("--alternative-lights", help=ALTERNATIVE_HELP)] = False,
     jitter: Annotated[bool, typer.Option(help="Move the rays within the pixel, by a new offset each frame.")] = True,
     seed: Annotated[int, typer.Option(metavar="N", min=0, help="Another seed gives other noise.")] = 0,
     bounces: Annotated[int, typer.Option(metavar="N", min=0, help="Surfaces a path visits after the first.")] = 1,
@@ -45,15 +49,16 @@ def render(
     \b
     Examples:
       svgf-cl render cornell -o out/box
+      svgf-cl render ../shared/scenes/garden --alternative-lights -o out/garden
       svgf-cl render sponza.glb --camera 8,3,0/0,3,0/60 --camera 6,2,1/0,3,0/60 --sky 0.8,0.9,1 -o out/sponza
       svgf-cl render cornell --frames 4 --size 320x180 --reference-spp 256 -o out/box
     """
     require_tracer()
     from tracer import Camera, CameraPath, Shot, render_reference, render_sequence
 
-    shape, light = parse_size(size), parse_rgb(sky) if sky else None
+    shape = parse_size(size)
     cameras = [Camera.parse(text) for text in camera]
-    world = open_scene(scene, light)
+    world = open_scene(scene, read_sky(sky) if sky else None, alternative_lights=alternative_lights)
     shot = Shot(world, shape, frames, CameraPath.through(cameras) if cameras else None)
     folder, written = make_folder(output), ("frame", "reference") if reference_spp else ("frame",)
     check_leftovers(folder, [frame_path(folder, n, stem) for stem in written for n in range(frames)])

@@ -6,10 +6,11 @@ import signal
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from svgf_cl.cli.options import parse_rgb
 from svgf_cl.errors import SvgfError
 
 if TYPE_CHECKING:
-    from tracer import Scene
+    from tracer import Environment, Scene
 
 
 def require_tracer() -> None:
@@ -26,23 +27,36 @@ def require_tracer() -> None:
         signal.signal(signal.SIGINT, interrupt)
 
 
-def open_scene(name: str, sky: tuple[float, float, float] | None) -> Scene:
-    """Open the scene in file `name`, or make the built-in one of that name.
+def read_sky(text: str) -> tuple[float, float, float] | Environment:
+    """Read what ``--sky`` says: three radiances, or the image in a file.
 
     Raises
     ------
     SvgfError
-        Where there is neither, where the file cannot be used, or where a built-in scene is given a sky.
+        Where it is neither, or the image cannot be used.
     """
     import tracer
 
-    if Path(name).is_file():
-        return tracer.load_scene(Path(name), sky=sky)
-    if name not in tracer.BUILTIN:
+    return tracer.load_environment(text) if Path(text).suffix.lower() in (".hdr", ".exr") else parse_rgb(text)
+
+
+def open_scene(
+    name: str, sky: tuple[float, float, float] | Environment | None, *, alternative_lights: bool = False
+) -> Scene:
+    """Open the scene in file or folder `name`, or make the built-in one of that name.
+
+    Raises
+    ------
+    SvgfError
+        Where there is neither, where the file cannot be used, or where a built-in scene is given other lights.
+    """
+    import tracer
+
+    if name in tracer.BUILTIN:
+        if sky or alternative_lights:
+            raise SvgfError(f"{name}: expected a file or folder to light otherwise, got a built-in scene with its own lamps")
+        return tracer.builtin_scene(name)
+    if not Path(name).exists():
         known = ", ".join(tracer.BUILTIN)
-        raise SvgfError(f"{name}: expected a scene file or a built-in scene ({known}), found nothing of that name")
-    if sky:
-        raise SvgfError(
-            f"--sky: expected a scene file to light, got the built-in scene {name}, which has its own lamps"
-        )
-    return tracer.builtin_scene(name)
+        raise SvgfError(f"{name}: expected a scene's folder or file or a built-in scene ({known}), found nothing")
+    return tracer.load_scene(name, sky, alternative_lights=alternative_lights)

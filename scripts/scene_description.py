@@ -1,0 +1,102 @@
+"""Writes docs/scene_description.md from the models that check a scene.json."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from svgf_cl.files import written_whole
+from tracer.description import SceneDescription
+
+TARGET = Path("docs/scene_description.md")
+
+INTRODUCTION = """# scene.json
+
+Made by `make docs` (`python scripts/scene_description.py`) from `tracer/description`; do not edit.
+
+What a model's own file lacks of a scene, in a file beside it; `svgf-cl render FOLDER` takes both. Numbers and booleans
+are not put into quotes, and a field that is not listed here is an error. Lengths are in metres, angles in degrees, times
+in seconds. Colours are linear, with the primaries of sRGB. Radiance has no absolute unit, but the same throughout a scene.
+"""
+
+# Of the fields that tell one kind of object from another.
+TAGS = ("type", "kind")
+
+QUOTE = '"'
+
+
+def page() -> str:
+    """The whole page."""
+    schema = SceneDescription.model_json_schema()
+    parts = schema.pop("$defs")
+    in_order = dict.fromkeys(re.findall(r'"\$ref": "#/\$defs/(\w+)"', json.dumps(schema)))
+    return INTRODUCTION + "".join(section(part, parts) for part in [schema, *(parts[name] for name in in_order)])
+
+
+def section(part: dict[str, Any], parts: dict[str, Any]) -> str:
+    """One object: a sentence, and a row a field; the one that says which object it is comes first."""
+    fields = sorted(part["properties"].items(), key=lambda item: item[0] not in TAGS)
+    rows = [
+        f"| `{name}` | {field.get('description', 'What this is.')} | {values(field, parts)} | {default(field)} |"
+        for name, field in fields
+    ]
+    head = ["| field | meaning | values | where absent |", "|---|---|---|---|"]
+    return "\n".join([f"\n## {part['title']}\n{part['description']}\n", *head, *rows]) + "\n"
+
+
+def default(field: dict[str, Any]) -> str:
+    """What holds where the field is absent."""
+    if "default" not in field:
+        return "an error"
+    value = field["default"]
+    return "-" if value in (None, "", [], {}) else f"`{json.dumps(value).strip(QUOTE)}`"
+
+
+def values(field: dict[str, Any], parts: dict[str, Any]) -> str:
+    """Which values a field may have."""
+    text = " or ".join(alternatives(field, parts))
+    return f"{text}, {field['unit']}" if "unit" in field else text
+
+
+def alternatives(field: dict[str, Any], parts: dict[str, Any]) -> Iterator[str]:
+    """Each form that a value may have."""
+    for name in ("anyOf", "oneOf"):
+        for form in field.get(name, []):
+            if form.get("type") != "null":
+                yield values(form, parts)
+    if "$ref" in field:
+        title = parts[field["$ref"].rpartition("/")[2]]["title"]
+        yield f"[{title}](#{title.lower().replace(' ', '-')})"
+    elif "const" in field or "enum" in field:
+        yield from (f"`{json.dumps(value).strip(QUOTE)}`" for value in field.get("enum", [field.get("const")]))
+    elif "prefixItems" in field:
+        yield f"{len(field['prefixItems'])} of: {values(field['prefixItems'][0], parts)}"
+    elif "items" in field:
+        yield f"a list of: {values(field['items'], parts)}"
+    elif "additionalProperties" in field:
+        yield f"by name: {values(field['additionalProperties'], parts)}"
+    elif "type" in field:
+        yield f"{field['type']}{limits(field)}"
+
+
+def limits(field: dict[str, Any]) -> str:
+    """The range of a number."""
+    if {"minimum", "maximum"} <= field.keys():
+        low, high = field["minimum"], field["maximum"]
+        return f" in {low}..{high}" if low < high else f", {low}"
+    signs = {"minimum": ">=", "exclusiveMinimum": ">", "maximum": "<=", "exclusiveMaximum": "<"}
+    return " and".join(f" {sign} {field[name]}" for name, sign in signs.items() if name in field)
+
+
+def main() -> None:
+    """Write the page."""
+    with written_whole(TARGET) as aside:
+        aside.write_text(page())
+    print(TARGET)
+
+
+if __name__ == "__main__":
+    main()

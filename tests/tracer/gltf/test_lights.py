@@ -1,0 +1,73 @@
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.tracer.gltf_files import Buffers, write_gltf
+from tracer.gltf.file import Gltf
+from tracer.gltf.lights import read_camera, read_lights
+from tracer.gltf.nodes import Nodes
+from tracer.lights import PointLight, Sun
+
+# A quarter turn about x: -z becomes +y, -y.
+UP, DOWN = (np.sqrt(0.5), 0, 0, np.sqrt(0.5)), (-np.sqrt(0.5), 0, 0, np.sqrt(0.5))
+
+
+def read(folder: Path, light: dict[str, Any], node: dict[str, Any], **more: Any) -> PointLight | Sun:
+    extensions = {"KHR_lights_punctual": {"lights": [{"type": "point"}, light]}}
+    nodes = [
+        {"name": "pole", "children": [1]},
+        {"extensions": {"KHR_lights_punctual": {"light": 1}}, "name": "lamp"} | node,
+    ]
+    gltf = Gltf.read(write_gltf(folder / "a.gltf", extensions=extensions, nodes=nodes, **more))
+    (found,) = read_lights(gltf, Nodes(gltf, np.eye(4)))
+    assert found.nodes == ("pole", "lamp")
+    return found.light
+
+
+def test_a_point_light_is_where_its_node_is(tmp_path: Path) -> None:
+    light = read(
+        tmp_path, {"type": "point", "color": [1, 0.5, 0.25], "intensity": 40, "range": 9}, {"translation": [1, 2, 3]}
+    )
+    position = light.motion.matrix(0.0) @ (*light.position, 1)
+    np.testing.assert_allclose(position[:3], (1, 2, 3))
+    assert (light.intensity, light.reach) == ((40, 20, 10), 9)
+    assert (light.inner_angle, light.outer_angle) == (180, 180)
+
+
+def test_a_spot_shines_along_minus_z(tmp_path: Path) -> None:
+    light = read(tmp_path, {"type": "spot", "spot": {"innerConeAngle": 0.1}}, {"rotation": DOWN})
+    np.testing.assert_allclose(light.motion.matrix(0.0)[:3, :3] @ light.direction, (0, -1, 0), atol=1e-12)
+    assert light.inner_angle == pytest.approx(np.degrees(0.1))
+    assert light.outer_angle == pytest.approx(45)
+
+
+def test_a_directional_light_comes_from_plus_z_without_extent(tmp_path: Path) -> None:
+    sun = read(tmp_path, {"type": "directional", "intensity": 5}, {"rotation": DOWN, "scale": [3, 3, 3]})
+    np.testing.assert_allclose(np.array(sun.direction_to_light) / 3, (0, 1, 0), atol=1e-12)
+    assert (sun.irradiance, sun.angular_radius) == ((5, 5, 5), 0)
+
+
+def test_a_camera_looks_along_minus_z_from_its_node(tmp_path: Path) -> None:
+    cameras = [
+        {"type": "orthographic", "orthographic": {}},
+        {"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}},
+    ]
+    nodes = [
+        {"camera": 0},
+        {"children": [2], "translation": [1, 0, 0]},
+        {"camera": 1, "translation": [0, 2, 3], "rotation": UP},
+    ]
+    gltf = Gltf.read(write_gltf(tmp_path / "a.gltf", nodes=nodes, cameras=cameras))
+    camera = read_camera(gltf, Nodes(gltf, np.eye(4)))
+    np.testing.assert_allclose(camera.position, (1, 2, 3))
+    np.testing.assert_allclose(camera.basis(), [(1, 0, 0), (0, 0, 1), (0, 1, 0)], atol=1e-9)
+    assert camera.fov_y == pytest.approx(np.degrees(0.5))
+
+
+def test_a_file_without_a_camera_has_none(tmp_path: Path) -> None:
+    gltf = Gltf.read(write_gltf(tmp_path / "a.gltf", Buffers()))
+    assert read_camera(gltf, Nodes(gltf, np.eye(4))) is None

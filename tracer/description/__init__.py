@@ -1,0 +1,6 @@
+"""``scene.json``: what a model's own file lacks of a scene, as models that check it; docs/scene_description.md."""
+
+from .document import FILE_NAME, SceneDescription, read_description
+from .scene import described_scene
+
+__all__ = ["FILE_NAME", "SceneDescription", "described_scene", "read_description"]

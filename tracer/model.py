@@ -1,0 +1,79 @@
+"""What a model file holds, before it is described and lit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+from .camera import Camera
+from .geometry import Instance
+from .lights import PointLight, Sun
+from .materials import Material
+from .motion import Motion
+
+
+@dataclass(frozen=True, eq=False)
+class Object:
+    """An instance, and by what names the file knows it.
+
+    Parameters
+    ----------
+    instance : Instance
+    nodes : tuple of str
+        Its node's name after those of the nodes above it, outermost first.
+    material : str
+    """
+
+    instance: Instance
+    nodes: tuple[str, ...]
+    material: str
+
+    def carried(self, motion: Motion) -> Object:
+        """The object with `motion` on top of its own."""
+        return replace(self, instance=replace(self.instance, motion=_on_top(motion, self.instance.motion)))
+
+
+@dataclass(frozen=True, eq=False)
+class Light:
+    """A light, and the names of its node and those above it, outermost first."""
+
+    light: PointLight | Sun
+    nodes: tuple[str, ...]
+
+    def carried(self, motion: Motion) -> Light:
+        """The light with `motion` on top of its own; the sun stays where it is."""
+        if isinstance(self.light, Sun):
+            return self
+        return replace(self, light=replace(self.light, motion=_on_top(motion, self.light.motion)))
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """The objects, lights and camera of a file."""
+
+    objects: list[Object]
+    lights: list[Light] = field(default_factory=list)
+    camera: Camera | None = None
+
+    def carried(self, nodes: frozenset[str], motion: Motion) -> Model:
+        """The model with `motion` on top of what moves those nodes and all that hangs on them."""
+        return replace(
+            self,
+            objects=[item.carried(motion) if nodes.intersection(item.nodes) else item for item in self.objects],
+            lights=[item.carried(motion) if nodes.intersection(item.nodes) else item for item in self.lights],
+        )
+
+    def painted(self, paint: Callable[[str, Material], Material]) -> Model:
+        """The model with other materials: what `paint` makes of each one's name and itself."""
+        made: dict[int, Material] = {}
+        objects = []
+        for item in self.objects:
+            material = item.instance.material
+            if id(material) not in made:
+                made[id(material)] = paint(item.material, material)
+            objects.append(replace(item, instance=replace(item.instance, material=made[id(material)])))
+        return replace(self, objects=objects)
+
+
+def _on_top(outer: Motion, inner: Motion | None) -> Motion:
+    return Motion([*outer.links, *(inner.links if inner else ())])

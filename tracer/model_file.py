@@ -1,0 +1,36 @@
+"""Model files of every kind that can be read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from .errors import SceneError
+from .gltf import load_gltf
+from .model import Model
+from .obj import load_obj
+from .vectors import Float64
+
+LOADERS: dict[str, Callable[[Path, Float64], Model]] = {".glb": load_gltf, ".gltf": load_gltf, ".obj": load_obj}
+
+
+def load_model(path: Path, to_world: Float64) -> Model:
+    """Load the model at `path`, whose frame `to_world` (4, 4) leads into the world's.
+
+    Raises
+    ------
+    SceneError
+        The file is missing, of another kind, damaged, or holds something that would be shown wrongly.
+    """
+    if not path.is_file():
+        raise SceneError(f"{path}: no such file")
+    if path.suffix.lower() not in LOADERS:
+        raise SceneError(f"{path}: expected a file called {', '.join(LOADERS)}, found another kind")
+    try:
+        return LOADERS[path.suffix.lower()](path, to_world)
+    except SceneError as error:
+        raise SceneError(f"{path}: {error}") from error
+    # Files hold anything, and trimesh raises whatever comes of it: to the user the file is unreadable.
+    except Exception as error:
+        reason = " ".join(f"{type(error).__name__}: {error}".split())
+        raise SceneError(f"{path}: cannot be read as glTF, GLB or OBJ ({reason})") from error
