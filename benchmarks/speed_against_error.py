@@ -50,7 +50,9 @@ def speed_against_error(
         str, typer.Option(metavar="SCENE", help="A glTF, GLB or OBJ file, or the name of a built-in scene.")
     ] = "cornell",
     camera: Annotated[list[str], typer.Option(metavar="TEXT", help=CAMERA_HELP)] = [],  # noqa: B006  # never changed
-    sky: Annotated[str | None, typer.Option(metavar="R,G,B", help="Light outside: linear radiance, as 0.4,0.5,0.7.")] = None,
+    sky: Annotated[
+        str | None, typer.Option(metavar="R,G,B", help="Light outside: linear radiance, as 0.4,0.5,0.7.")
+    ] = None,
     spp: Annotated[
         int, typer.Option(metavar="N", min=2 * PART, help=f"Samples per pixel of the truth, a multiple of {2 * PART}.")
     ] = 512,

@@ -18,8 +18,8 @@ INTRODUCTION = """# scene.json
 Made by `make docs` (`python scripts/scene_description.py`) from `tracer/description`; do not edit.
 
 What a model's own file lacks of a scene, in a file beside it; `svgf-cl render FOLDER` takes both. Numbers and booleans
-are not put into quotes, and a field that is not listed here is an error. Lengths are in metres, angles in degrees, times
-in seconds. Colours are linear, with the primaries of sRGB. Radiance has no absolute unit, but the same throughout a scene.
+are not put into quotes, and a field that is not listed here is an error. Colours are linear, of sRGB's primaries.
+Radiance has no absolute unit, but the same throughout a scene.
 """
 
 # Of the fields that tell one kind of object from another.

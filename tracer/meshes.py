@@ -24,12 +24,17 @@ def instance(mesh: trimesh.Trimesh, motion: Motion, material: Material) -> Insta
     normals = mesh.vertex_normals if "vertex_normals" in mesh._cache else None
     uv = getattr(mesh.visual, "uv", None)
     texcoords = None if uv is None else np.asarray(uv)[faces]
-    if any(isinstance(link, Keyframes) for link in motion.links):
+    if is_moving(motion):
         return Instance(mesh.vertices[faces], material, None if normals is None else normals[faces], texcoords, motion)
     corners = trimesh.transform_points(mesh.vertices, transform)[faces]
     if normals is not None:
         normals = trimesh.unitize(normals @ _cofactors(transform[:3, :3]).T)[faces]
     return Instance(corners, material, normals, texcoords)
+
+
+def is_moving(motion: Motion) -> bool:
+    """Whether anything in `motion` changes over time."""
+    return any(isinstance(link, Keyframes) for link in motion.links)
 
 
 def _cofactors(matrix: Float64) -> Float64:

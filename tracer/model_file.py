@@ -20,14 +20,17 @@ def load_model(path: Path, to_world: Float64) -> Model:
     Raises
     ------
     SceneError
-        The file is missing, of another kind, damaged, or holds something that would be shown wrongly.
+        The file is missing, empty, damaged, of another kind, or holds something that would be shown wrongly.
     """
     if not path.is_file():
         raise SceneError(f"{path}: no such file")
     if path.suffix.lower() not in LOADERS:
         raise SceneError(f"{path}: expected a file called {', '.join(LOADERS)}, found another kind")
     try:
-        return LOADERS[path.suffix.lower()](path, to_world)
+        model = LOADERS[path.suffix.lower()](path, to_world)
+        if not model.objects:
+            raise SceneError("expected at least one triangle, found none")
+        return model
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from error
     # Files hold anything, and trimesh raises whatever comes of it: to the user the file is unreadable.

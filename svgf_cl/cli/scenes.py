@@ -54,7 +54,9 @@ def open_scene(
 
     if name in tracer.BUILTIN:
         if sky or alternative_lights:
-            raise SvgfError(f"{name}: expected a file or folder to light otherwise, got a built-in scene with its own lamps")
+            raise SvgfError(
+                f"{name}: expected a file or folder to light otherwise, got a built-in scene with its own lamps"
+            )
         return tracer.builtin_scene(name)
     if not Path(name).exists():
         known = ", ".join(tracer.BUILTIN)

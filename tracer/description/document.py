@@ -33,7 +33,7 @@ class SceneDescription(Part, title="Scene"):
     metres_per_unit: Annotated[float, Field(gt=0), unit("m")] = Field(1.0, description="The model's unit of length.")
     camera: View | list[View] | None = Field(
         None,
-        description="One, or several through which it moves in equal times. Absent, the model's, else one that sees all.",
+        description="One, or several that it moves through in equal times. Absent, the model's or one that sees all.",
     )
     lights: list[AnyLight] = Field([], description="Besides the lights of the model; at most one of them a sky.")
     alternative_lights: list[AnyLight] = Field([], description="In place of `lights` with `--alternative-lights`.")

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from tracer.camera import Camera, vector
 from tracer.lights import PointLight, Sun
-from tracer.meshes import colour
+from tracer.meshes import colour, is_moving
 from tracer.model import Light
 from tracer.motion import Motion
 
@@ -43,9 +44,12 @@ def _light(document: dict[str, Any], motion: Motion) -> PointLight | Sun:
         cone = document.get("spot", {})
         inner = math.degrees(cone.get("innerConeAngle", 0.0))
         outer = math.degrees(cone.get("outerConeAngle", math.pi / 4.0))
-    return PointLight(
-        (0.0, 0.0, 0.0), strength, (0.0, 0.0, -1.0), inner, outer, document.get("range", math.inf), motion
-    )
+    reach = document.get("range", math.inf)
+    light = PointLight((0.0, 0.0, 0.0), strength, (0.0, 0.0, -1.0), inner, outer, reach, motion)
+    if is_moving(motion):
+        return light
+    position, direction = light.placed(0.0)
+    return replace(light, position=vector(position), direction=vector(direction), motion=None)
 
 
 def read_camera(gltf: Gltf, nodes: Nodes) -> Camera | None:

@@ -90,12 +90,12 @@ class Nodes:
         if "matrix" in node and channels:
             raise SceneError(f"nodes[{index}]: expected no matrix on a node that is animated, found one")
         if "matrix" in node:
-            columns: Float64 = np.reshape(np.array(node["matrix"], np.float64), (4, 4))
-            return columns.T
+            matrix: Float64 = np.array(node["matrix"], np.float64).reshape(4, 4).T  # it is stored by columns
+            return matrix
         tracks = {path: Track([0.0], [node.get(path, rest)]) for path, rest in REST.items()}
         tracks |= {path: self._track(sampler) for path, sampler in channels.items()}
-        moving = Keyframes(**tracks)
-        return moving if channels else moving.matrix(0.0)
+        link = Keyframes(**tracks)
+        return link if channels else link.matrix(0.0)
 
     def _track(self, index: int) -> Track:
         sampler = self._animation["samplers"][index]

@@ -16,13 +16,15 @@ from tracer.lights import PointLight, Sun
 UP, DOWN = (np.sqrt(0.5), 0, 0, np.sqrt(0.5)), (-np.sqrt(0.5), 0, 0, np.sqrt(0.5))
 
 
-def read(folder: Path, light: dict[str, Any], node: dict[str, Any], **more: Any) -> PointLight | Sun:
+def read(
+    folder: Path, light: dict[str, Any], node: dict[str, Any], buffers: Buffers | None = None, **more: Any
+) -> PointLight | Sun:
     extensions = {"KHR_lights_punctual": {"lights": [{"type": "point"}, light]}}
     nodes = [
         {"name": "pole", "children": [1]},
         {"extensions": {"KHR_lights_punctual": {"light": 1}}, "name": "lamp"} | node,
     ]
-    gltf = Gltf.read(write_gltf(folder / "a.gltf", extensions=extensions, nodes=nodes, **more))
+    gltf = Gltf.read(write_gltf(folder / "a.gltf", buffers, extensions=extensions, nodes=nodes, **more))
     (found,) = read_lights(gltf, Nodes(gltf, np.eye(4)))
     assert found.nodes == ("pole", "lamp")
     return found.light
@@ -32,17 +34,27 @@ def test_a_point_light_is_where_its_node_is(tmp_path: Path) -> None:
     light = read(
         tmp_path, {"type": "point", "color": [1, 0.5, 0.25], "intensity": 40, "range": 9}, {"translation": [1, 2, 3]}
     )
-    position = light.motion.matrix(0.0) @ (*light.position, 1)
-    np.testing.assert_allclose(position[:3], (1, 2, 3))
+    assert (light.position, light.motion) == ((1, 2, 3), None)
     assert (light.intensity, light.reach) == ((40, 20, 10), 9)
     assert (light.inner_angle, light.outer_angle) == (180, 180)
 
 
 def test_a_spot_shines_along_minus_z(tmp_path: Path) -> None:
     light = read(tmp_path, {"type": "spot", "spot": {"innerConeAngle": 0.1}}, {"rotation": DOWN})
-    np.testing.assert_allclose(light.motion.matrix(0.0)[:3, :3] @ light.direction, (0, -1, 0), atol=1e-12)
+    np.testing.assert_allclose(light.direction, (0, -1, 0), atol=1e-12)
     assert light.inner_angle == pytest.approx(np.degrees(0.1))
     assert light.outer_angle == pytest.approx(45)
+
+
+def test_a_light_moves_with_its_node(tmp_path: Path) -> None:
+    buffers = Buffers()
+    sampler = {"input": buffers.add([0, 1]), "output": buffers.add([[0, 0, 0], [0, 4, 0]])}
+    animation = {"samplers": [sampler], "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}
+    meshes = [{"primitives": [buffers.square()]}]
+    light = read(tmp_path, {"type": "spot"}, {"rotation": UP}, buffers, animations=[animation], meshes=meshes)
+    position, direction = light.placed(0.5)
+    np.testing.assert_allclose(position, (0, 2, 0), atol=1e-6)
+    np.testing.assert_allclose(direction, (0, 1, 0), atol=1e-6)
 
 
 def test_a_directional_light_comes_from_plus_z_without_extent(tmp_path: Path) -> None:

@@ -1,0 +1,59 @@
+from __future__ import annotations
+
+import numpy as np
+import PIL.Image
+import pytest
+import trimesh
+
+from tests.tracer.gltf_files import CORNERS, NORMAL
+from tracer.materials import Material
+from tracer.meshes import Images, instance
+from tracer.motion import Keyframes, Motion, Track
+
+GREY = Material()
+
+
+def square(*, smooth: bool = False) -> trimesh.Trimesh:
+    normals = np.array(4 * [NORMAL]) if smooth else None
+    return trimesh.Trimesh(CORNERS, [[0, 1, 2], [0, 2, 3]], vertex_normals=normals, process=False)
+
+
+def scaled(*scale: float) -> Motion:
+    return Motion([np.diag([*scale, 1.0])])
+
+
+def facing(corners: np.ndarray) -> np.ndarray:
+    return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+
+def test_a_mirrored_object_keeps_its_front() -> None:
+    moving = Motion([Keyframes(scale=Track([0], [[-1, 1, 1]]))])
+    assert (facing(instance(square(), scaled(-1, 1, 1), GREY).corners)[:, 2] > 0).all()
+    assert (facing(instance(square(), moving, GREY).corners)[:, 2] < 0).all()  # it is mirrored later
+
+
+def test_a_mesh_without_normals_is_flat() -> None:
+    assert instance(square(), scaled(1, 1, 1), GREY).normals is None
+
+
+@pytest.mark.parametrize("scale", [(1, 1, 1), (1, 1, 0.5), (1, 1, 2), (1e-7, 1e-7, 1e-7)])
+def test_normals_turn_with_what_they_stand_on(scale: tuple[float, float, float]) -> None:
+    expected = np.array(NORMAL) / scale
+    expected /= np.linalg.norm(expected)
+    normals = instance(square(smooth=True), scaled(*scale), GREY).normals
+    np.testing.assert_allclose(normals, np.broadcast_to(expected, (2, 3, 3)), atol=1e-6)
+
+
+@pytest.mark.parametrize("scale", [(1, 1, 0), (1, 0, 1), (0, 0, 0)])
+def test_a_flattened_object_is_no_error(scale: tuple[float, float, float]) -> None:
+    flat = instance(square(smooth=True), scaled(*scale), GREY)
+    assert np.isfinite(flat.corners).all()
+    assert np.isfinite(flat.normals).all()
+
+
+def test_an_image_is_unpacked_once_for_each_use() -> None:
+    images, image = Images(), PIL.Image.new("P", (2, 3))
+    colour, alpha = images.pixels(image, "RGB"), images.pixels(image, "RGBA")
+    assert (colour.shape, alpha.shape) == ((3, 2, 3), (3, 2, 4))
+    assert images.pixels(image, "RGB") is colour
+    assert images.pixels(None, "RGB") is None

@@ -1,0 +1,40 @@
+from __future__ import annotations
+
+import numpy as np
+
+from tracer.geometry import Instance
+from tracer.lights import PointLight, Sun
+from tracer.materials import Material
+from tracer.model import Light, Model, Object
+from tracer.motion import Motion
+
+UP, WIDER = Motion.sliding([0, 1], [[0, 0, 0], [0, 2, 0]]), Motion([np.diag([3.0, 1.0, 1.0, 1.0])])
+STEEL = Material()
+
+
+def item(*nodes: str, material: Material = STEEL, motion: Motion | None = None) -> Object:
+    return Object(Instance(np.zeros((1, 3, 3)), material, motion=motion), nodes, "steel")
+
+
+def test_a_motion_carries_what_hangs_on_its_nodes_on_top_of_their_own() -> None:
+    lamp = Light(PointLight((1, 0, 0), (1, 1, 1)), ("door", "lamp"))
+    sun = Light(Sun((0, 1, 0), (1, 1, 1)), ("door",))
+    model = Model([item("door"), item("door", "handle", motion=WIDER), item("floor")], [lamp, sun])
+    carried = model.carried(frozenset(["door"]), UP)
+    door, handle, floor = (item.instance.motion for item in carried.objects)
+    np.testing.assert_allclose(door.matrix(0.5) @ (1, 1, 1, 1), (1, 2, 1, 1))
+    np.testing.assert_allclose(handle.matrix(0.5) @ (1, 1, 1, 1), (3, 2, 1, 1))
+    assert floor is None
+    np.testing.assert_allclose(carried.lights[0].light.placed(0.5)[0], (1, 1, 0))
+    assert carried.lights[1] is sun
+
+
+def test_objects_of_one_material_still_share_it_when_painted() -> None:
+    wood = Material()
+    seen = []
+    model = Model([item("a"), item("b"), item("c", material=wood)])
+    painted = model.painted(lambda name, material: seen.append(name) or Material(emission=(1, 0, 0)))
+    first, second, third = (item.instance.material for item in painted.objects)
+    assert first is second
+    assert first is not third
+    assert seen == ["steel", "steel"]
