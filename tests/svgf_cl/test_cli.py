@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import sys
 from dataclasses import replace
@@ -23,6 +24,8 @@ from svgf_cl.sequence import (
 )
 
 COMMANDS = ("devices", "demo", "render", "denoise", "compare", "bench", "tune")
+# Radiance of the sky in either set of a scene's lights.
+LIGHTS = {"lights": 0.5, "alternative_lights": 2.0}
 NAMES = [f"frame.{number:04d}.exr" for number in range(3)]
 
 
@@ -248,7 +251,13 @@ def test_a_bad_camera(tmp_path: Path, refused) -> None:
 
 
 def test_a_missing_scene(tmp_path: Path, refused) -> None:
-    refused("nowhere.glb: expected a scene file or a built-in", "render", tmp_path / "nowhere.glb", "-o", tmp_path)
+    refused(
+        "nowhere.glb: expected a scene's folder or file or a built-in",
+        "render",
+        tmp_path / "nowhere.glb",
+        "-o",
+        tmp_path,
+    )
 
 
 def test_a_scene_without_light_is_offered_a_sky(tmp_path: Path, refused) -> None:
@@ -257,6 +266,16 @@ def test_a_scene_without_light_is_offered_a_sky(tmp_path: Path, refused) -> None
     options = ("--frames", "1", "--size", "16x12", "-o", tmp_path)
     refused("--sky", "render", scene, *options)
     assert run("render", scene, "--sky", "1,1,1", *options) == 0
+
+
+def test_a_folder_with_a_scene_and_its_alternative_lights(tmp_path: Path) -> None:
+    (tmp_path / "triangle.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    lights = {kind: [{"type": "sky_constant", "radiance": 3 * [level]}] for kind, level in LIGHTS.items()}
+    (tmp_path / "scene.json").write_text(json.dumps({"model": "triangle.obj"} | lights))
+    options = ("--frames", "1", "--size", "16x12", "-o", tmp_path / "out")
+    for option, kind in (((), "lights"), (("--alternative-lights",), "alternative_lights")):
+        assert run("render", tmp_path, *option, *options) == 0
+        assert read_frame(tmp_path / "out" / "frame.0000.exr").color[0, 0, 0] == LIGHTS[kind]
 
 
 def test_frames_of_an_earlier_run_are_not_mixed_in(frames: Path, refused) -> None:
