@@ -20,6 +20,7 @@ from typing import NamedTuple
 
 from .compiled import compiled
 from .energy import ALPHA_FLOOR, Terms, mean_terms, terms
+from .sampling import on_circle
 from .vec3 import Vec3, add, dot, luminance, multiply, normalise, scale
 
 BLACK = (0.0, 0.0, 0.0)
@@ -118,8 +119,8 @@ def diffuse_density(wi: Vec3) -> float:
 @compiled
 def sample_diffuse(u1: float, u2: float) -> Vec3:
     """A direction with the density of its cosine, for uniform numbers in [0, 1)."""
-    radius, azimuth = math.sqrt(u1), 2.0 * math.pi * u2
-    return radius * math.cos(azimuth), radius * math.sin(azimuth), math.sqrt(1.0 - u1)
+    radius, (cosine, sine) = math.sqrt(u1), on_circle(u2)
+    return radius * cosine, radius * sine, math.sqrt(1.0 - u1)
 
 
 @compiled
@@ -191,9 +192,8 @@ def _sample_visible_normal(wo: Vec3, alpha: float, u1: float, u2: float) -> Vec3
     """
     stretched = normalise((alpha * wo[0], alpha * wo[1], wo[2]))
     below = u1 * (1.0 + stretched[2])
-    radius, azimuth = math.sqrt(below * (2.0 - below)), 2.0 * math.pi * u2
-    x = radius * math.cos(azimuth) + stretched[0]
-    y = radius * math.sin(azimuth) + stretched[1]
+    radius, (cosine, sine) = math.sqrt(below * (2.0 - below)), on_circle(u2)
+    x, y = radius * cosine + stretched[0], radius * sine + stretched[1]
     return normalise((alpha * x, alpha * y, 1.0 - below + stretched[2]))
 
 
@@ -209,8 +209,8 @@ def _multiple_share(r: Reflection, cos_o: float) -> float:
 def _sample_multiple(alpha: float, u1: float, u2: float) -> Vec3:
     """A direction with a density akin to what is lost to one hit: c / (c^2 + alpha^2) for the cosine c."""
     cosine = alpha * math.sqrt(math.expm1(u1 * math.log1p(1.0 / (alpha * alpha))))
-    radius, azimuth = math.sqrt(max(1.0 - cosine * cosine, 0.0)), 2.0 * math.pi * u2
-    return radius * math.cos(azimuth), radius * math.sin(azimuth), cosine
+    radius, (x, y) = math.sqrt(max(1.0 - cosine * cosine, 0.0)), on_circle(u2)
+    return radius * x, radius * y, cosine
 
 
 @compiled

@@ -11,6 +11,7 @@ import numpy as np
 
 from .compiled import compiled
 from .errors import SceneError
+from .sampling import on_circle
 from .vec3 import Vec3, add, dot, normalise, scale, subtract
 from .vectors import Float64
 
@@ -123,8 +124,8 @@ def ray_through(lens: Lens, x: float, y: float, u: float, v: float) -> tuple[Vec
     way = add(add(scale(lens.right, across), scale(lens.up, above)), lens.forward)
     if lens.radius == 0.0:
         return lens.position, normalise(way)
-    radius, angle = lens.radius * math.sqrt(u), 2.0 * math.pi * v
-    offset = add(scale(lens.right, radius * math.cos(angle)), scale(lens.up, radius * math.sin(angle)))
+    radius, (cosine, sine) = lens.radius * math.sqrt(u), on_circle(v)
+    offset = add(scale(lens.right, radius * cosine), scale(lens.up, radius * sine))
     return add(lens.position, offset), normalise(subtract(scale(way, lens.focus), offset))
 
 

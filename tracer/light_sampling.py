@@ -18,7 +18,7 @@ from .compiled import compiled
 from .geometry import Triangles, interpolated, texture_coordinates
 from .lights import PointLight, Sun
 from .materials import Material, Materials, emitted_radiance
-from .sampling import Random4
+from .sampling import Random4, on_circle
 from .sky import SkyTable, sample_sky, sky_density, sky_radiance
 from .vec3 import Vec3, add, cross, dot, normalise, row, scale, subtract, to_world
 from .vectors import LUMINANCE, Float64
@@ -183,9 +183,8 @@ def _sample_sun(lights: Lights, u: float, v: float, w: float) -> LightSample:
     density = chance / _solid_angle(radius)
     height = 2.0 * v * math.sin(radius / 2.0) ** 2  # 1 - cosine, which would lose its digits
     across = math.sqrt(height * (2.0 - height))
-    angle = 2.0 * math.pi * w
-    local = (across * math.cos(angle), across * math.sin(angle), 1.0 - height)
-    direction = to_world(local, middle)
+    cosine, sine = on_circle(w)
+    direction = to_world((across * cosine, across * sine, 1.0 - height), middle)
     return LightSample(direction, math.inf, scale(_sun_radiance(lights, number), 1.0 / density), density)
 
 

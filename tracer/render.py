@@ -6,8 +6,7 @@ import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from functools import partial
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -30,7 +29,7 @@ from .sampling import pixel_jitter, stream_key
 from .scene import Moment
 from .shading import pick_moments, spread
 from .shot import Shot
-from .vectors import Float32
+from .vectors import Float32, Float64
 
 # Pixels that one task traces at once: few enough for what Embree and the compiled loops hand to each other to stay in a
 # core's cache, enough to amortise their calls.
@@ -89,7 +88,7 @@ def render_frame(
     Returns
     -------
     Frame
-        With every field; ``color = direct + indirect + emission = diffuse + specular + emission``.
+        With every field, as in `Radiance` and `Features`.
 
     Raises
     ------
@@ -97,19 +96,22 @@ def render_frame(
         A number is out of its range.
     """
     _check(spp=(spp, 1), number=(number, 0), seed=(seed, 0), bounces=(bounces, 0))
-    light = np.zeros((shot.shape[0] * shot.shape[1], 5, 3), np.float32)
-    features = Features.empty(len(light))
-    trace_range = partial(trace_samples, shot, number, stream=FRAME, seed=seed, jitter=jitter, bounces=bounces)
-    for tile in trace_range(range(1), described=True):
-        light[tile.pixels] = tile.light
-        for target, values in zip(features, tile.features, strict=True):
-            target[tile.pixels] = values
-    for tile in trace_range(range(1, spp)):
-        light[tile.pixels] += tile.light
-    light /= spp
-    radiance = Radiance.of(light)
-    color = radiance.direct + radiance.indirect + radiance.emission
-    fields = {"color": color} | radiance._asdict() | features._asdict()
+    sampler = Sampler(shot, number, stream=FRAME, seed=seed, jitter=jitter, bounces=bounces)
+    count = shot.shape[0] * shot.shape[1]
+    features = Features.empty(count)
+    radiance = Radiance(*(np.empty((count, 3), np.float32) for _ in Radiance._fields))
+
+    def finish(pixels: slice) -> None:
+        light, described = sampler.trace(pixels, 0, described=True)
+        for sample in range(1, spp):
+            light += sampler.trace(pixels, sample)[0]
+        light /= spp
+        for target, values in zip((*features, *radiance), (*described, *Radiance.of(light)), strict=True):
+            target[pixels] = values
+
+    for _ in _in_threads(finish, tiles(count)):
+        pass
+    fields = features._asdict() | radiance._asdict()
     return Frame(**{name: values.reshape(*shot.shape, *values.shape[1:]) for name, values in fields.items()})
 
 
@@ -162,11 +164,12 @@ def render_reference(
 
 
 class Radiance(NamedTuple):
-    """Light of N pixels, (N, 3) each: ``direct + indirect = diffuse + specular``.
+    """Light of N pixels, (N, 3) each: ``color = direct + indirect + emission = diffuse + specular + emission``.
 
     Direct light was reflected once, indirect light more often; diffuse light by the diffuse lobe of the first surface.
     """
 
+    color: Float32
     direct: Float32
     indirect: Float32
     diffuse: Float32
@@ -176,13 +179,12 @@ class Radiance(NamedTuple):
     @classmethod
     def of(cls, light: Float32) -> Radiance:
         """Sum up the kinds of light (N, 5, 3)."""
-        return cls(
-            light[:, DIRECT_DIFFUSE] + light[:, DIRECT_SPECULAR],
-            light[:, INDIRECT_DIFFUSE] + light[:, INDIRECT_SPECULAR],
-            light[:, DIRECT_DIFFUSE] + light[:, INDIRECT_DIFFUSE],
-            light[:, DIRECT_SPECULAR] + light[:, INDIRECT_SPECULAR],
-            np.ascontiguousarray(light[:, EMISSION]),
-        )
+        direct = light[:, DIRECT_DIFFUSE] + light[:, DIRECT_SPECULAR]
+        indirect = light[:, INDIRECT_DIFFUSE] + light[:, INDIRECT_SPECULAR]
+        diffuse = light[:, DIRECT_DIFFUSE] + light[:, INDIRECT_DIFFUSE]
+        specular = light[:, DIRECT_SPECULAR] + light[:, INDIRECT_SPECULAR]
+        emission = light[:, EMISSION]
+        return cls(direct + indirect + emission, direct, indirect, diffuse, specular, emission)
 
 
 class Tile(NamedTuple):
@@ -235,30 +237,60 @@ def trace_samples(
     first, end = rows or (0, shot.shape[0])
     if not 0 <= first < end <= shot.shape[0]:
         raise SceneError(f"rows: expected 0 <= first < end <= {shot.shape[0]}, got {rows}")
+    sampler = Sampler(shot, number, stream=stream, seed=seed, jitter=jitter, bounces=bounces)
     width = shot.shape[1]
-    exposures = _exposures(shot, number)
-    key = stream_key(stream, seed, number)
+    start = first * width
 
     def job(task: tuple[int, slice]) -> Tile:
         sample, pixels = task
-        draws = Draws(key, sample, np.arange(pixels.start, pixels.stop) + first * width)
-        count = len(draws.pixels)
-        positions = np.stack([draws.pixels % width, draws.pixels // width], axis=1).astype(np.float64)
-        if jitter and stream == FRAME and sample == 0:
-            positions += pixel_jitter(number)
-        elif jitter:
-            spread(draws, positions)
-        tile = Tile(sample, pixels, np.empty((count, 5, 3), np.float32), Features.empty(count if described else 0))
-        for exposure, chosen in zip(exposures, _shared_out(draws, len(exposures)), strict=True):
-            part = draws._replace(pixels=draws.pixels[chosen])
-            features = Features.empty(len(part.pixels) if described else 0)
-            tile.light[chosen] = trace(*exposure, part, positions[chosen], bounces, features)
-            for target, values in zip(tile.features, features, strict=True) if described else ():
-                target[chosen] = values
-        return tile
+        within = slice(start + pixels.start, start + pixels.stop)
+        return Tile(sample, pixels, *sampler.trace(within, sample, described=described))
 
-    tiles = [slice(start, min(start + TILE, (end - first) * width)) for start in range(0, (end - first) * width, TILE)]
-    yield from _in_threads(job, ((sample, pixels) for sample in samples for pixels in tiles))
+    yield from _in_threads(job, ((sample, pixels) for sample in samples for pixels in tiles((end - first) * width)))
+
+
+class Sampler:
+    """Traces single samples of a frame's pixels; parameters are those of `trace_samples`."""
+
+    def __init__(self, shot: Shot, number: int, *, stream: int, seed: int, jitter: bool, bounces: int) -> None:
+        self._exposures = _exposures(shot, number)
+        self._key = stream_key(stream, seed, number)
+        self._width, self._jitter, self._bounces = shot.shape[1], jitter, bounces
+        self._offset = pixel_jitter(number) if stream == FRAME else None
+
+    def trace(self, pixels: slice, sample: int, *, described: bool = False) -> tuple[Float32, Features]:
+        """One sample of neighbouring pixels, which count row by row: light (N, 5, 3), and features if asked for."""
+        draws = Draws(self._key, sample, np.arange(pixels.start, pixels.stop))
+        positions = self._positions(draws)
+        count = len(draws.pixels)
+        if len(self._exposures) == 1:
+            features = Features.empty(count if described else 0)
+            return trace(*self._exposures[0], draws, positions, self._bounces, features), features
+        light, features = np.empty((count, 5, 3), np.float32), Features.empty(count if described else 0)
+        moments = np.empty(count, np.int64)
+        pick_moments(draws, len(self._exposures), moments)
+        for moment, exposure in enumerate(self._exposures):
+            chosen = np.flatnonzero(moments == moment)
+            part = draws._replace(pixels=draws.pixels[chosen])
+            seen = Features.empty(len(chosen) if described else 0)
+            light[chosen] = trace(*exposure, part, positions[chosen], self._bounces, seen)
+            for target, values in zip(features, seen, strict=True) if described else ():
+                target[chosen] = values
+        return light, features
+
+    def _positions(self, draws: Draws) -> Float64:
+        """Image positions (N, 2) of a sample's rays."""
+        positions = np.stack([draws.pixels % self._width, draws.pixels // self._width], axis=1).astype(np.float64)
+        if self._jitter and self._offset and draws.sample == 0:
+            positions += self._offset
+        elif self._jitter:
+            spread(draws, positions)
+        return positions
+
+
+def tiles(count: int) -> list[slice]:
+    """Divide so many pixels into what is traced at once."""
+    return [slice(start, min(start + TILE, count)) for start in range(0, count, TILE)]
 
 
 def _exposures(shot: Shot, number: int) -> list[Exposure]:
@@ -276,15 +308,6 @@ def _exposure(shot: Shot, now: float, before: float) -> Exposure:
         shot.camera(now).lens(shape),
         Before(shot.camera(before).lens(shape), scene.corners_at(shot.time(before))),
     )
-
-
-def _shared_out(draws: Draws, moments: int) -> list[Any]:
-    """Which pixels of a batch see each of the moments."""
-    if moments == 1:
-        return [slice(None)]
-    chosen = np.empty(len(draws.pixels), np.int64)
-    pick_moments(draws, moments, chosen)
-    return [np.flatnonzero(chosen == moment) for moment in range(moments)]
 
 
 def _in_threads(function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:
