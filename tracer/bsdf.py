@@ -126,7 +126,7 @@ def sample_diffuse(u1: float, u2: float) -> Vec3:
 @compiled
 def specular_density(r: Reflection, wo: Vec3, wi: Vec3) -> float:
     """Density of `sample_specular` per solid angle; 0 below the horizon."""
-    if wi[2] <= 0.0:
+    if wi[2] <= 0.0 or is_lambertian(r):
         return 0.0
     once = 0.5 * _normals(add(wo, wi), r.alpha) / (wo[2] + _smith(wo, r.alpha))
     return once + _multiple_share(r, wo[2]) * (_multiple_density(wi[2], r.alpha) - once)
@@ -201,8 +201,8 @@ def _sample_visible_normal(wo: Vec3, alpha: float, u1: float, u2: float) -> Vec3
 def _multiple_share(r: Reflection, cos_o: float) -> float:
     """The part of the specular lobe's albedo that comes from several hits of the surface."""
     found, mean = terms(cos_o, r.alpha), mean_terms(r.alpha)
-    multiple = luminance(_multiple_colour(r.f0, mean)) * found.lost
-    return multiple / luminance(_coat_albedo(r.f0, found, mean))
+    brightest = max(r.f0[0], r.f0[1], r.f0[2])
+    return _multiple(brightest, mean) * found.lost / _coat(brightest, found, mean)
 
 
 @compiled
