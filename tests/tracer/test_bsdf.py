@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tracer import bsdf
 from tracer.bsdf import Reflection, reflection
-from tracer.energy import ALPHA_FLOOR
+from tracer.energy import ALPHA_FLOOR, mean_terms, terms
 from tracer.vec3 import Vec3
 
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
@@ -159,6 +159,18 @@ def test_a_metal_has_no_diffuse_lobe() -> None:
     assert r.f0 == (0.9, 0.6, 0.3)
     assert bsdf.specular_share(r, 0.7) == 1.0
     assert bsdf.evaluate_diffuse(r, under(0.7), under(0.2)) == BLACK
+
+
+def test_a_metal_tints_light_once_for_each_hit() -> None:
+    r = reflection((0.9, 0.6, 0.3), 1.0, 1.0, 1.5)
+    found, mean = terms(0.7, r.alpha), mean_terms(r.alpha)
+    for f0, share in zip(r.f0, bsdf.albedo(r, 0.7), strict=True):
+        fresnel = f0 + (1.0 - f0) / 21.0
+        inside, series = found.lost * fresnel, 0.0
+        for _ in range(100):
+            series += inside * fresnel * (1.0 - mean.lost)
+            inside *= fresnel * mean.lost
+        assert share == pytest.approx(f0 * (1.0 - found.lost - found.bias) + found.bias + series)
 
 
 def test_a_dielectric_reflects_as_its_refractive_index_says() -> None:

@@ -8,12 +8,12 @@ import pytest
 from tracer.energy import ALPHA_FLOOR, mean_terms, terms
 
 # Midpoints: the mean over the projected hemisphere is that of cosine^2.
-SQUARES = (np.arange(4000) + 0.5) / 4000
+SQUARES = (np.arange(20_000) + 0.5) / 20_000
 
 
 def test_the_widest_lobe_loses_what_its_closed_form_does() -> None:
     """For alpha = 1, seen from above, the albedo is the integral of x / (1 + x) over 0..1."""
-    assert terms(1.0, 1.0).lost == pytest.approx(math.log(2.0), abs=1e-3)
+    assert terms(1.0, 1.0).lost == pytest.approx(math.log(2.0), abs=2e-3)
 
 
 @pytest.mark.parametrize("cosine", [0.02, 0.1, 0.5, 0.9, 1.0])
