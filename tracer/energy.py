@@ -64,11 +64,11 @@ def _tabulate() -> tuple[Float64, Float64]:
     """Terms (ALPHAS, COSINES, 2), and their mean over the projected hemisphere (ALPHAS, 2)."""
     roots = np.linspace(0.0, 1.0, COSINES)
     cosine, alpha = np.meshgrid(np.maximum(roots, 1e-3) ** 4, np.linspace(FIRST, 1.0, ALPHAS) ** 2)
-    terms = np.stack(_integrate(cosine, alpha), -1)
+    table = np.stack(_integrate(cosine, alpha), -1)
     # The mean is that of the interpolated table, so that what is given back sums up to just what is lost.
     fine = (np.arange(1024) + 0.5) / 1024
-    interpolated = np.array([[np.interp(fine, roots, row[:, k]) for k in range(2)] for row in terms])
-    return terms, (interpolated * 8.0 * fine**7).mean(-1)
+    interpolated = np.array([[np.interp(fine, roots, row[:, k]) for k in range(2)] for row in table])
+    return table, (interpolated * 8.0 * fine**7).mean(-1)
 
 
 # Constants to Numba: compiled into the code that reads them.
@@ -77,9 +77,9 @@ TERMS, MEANS = _tabulate()
 
 @compiled
 def terms(cosine: float, alpha: float) -> Terms:
-    """The terms under `cosine` in 0..1 for a lobe of width `alpha` in ALPHA_FLOOR..1."""
+    """The terms under `cosine`, held within 0..1, for a lobe of width `alpha` in ALPHA_FLOOR..1."""
     row, v = _node((math.sqrt(alpha) - FIRST) / (1.0 - FIRST), ALPHAS)
-    column, u = _node(math.sqrt(math.sqrt(cosine)), COSINES)
+    column, u = _node(math.sqrt(math.sqrt(max(cosine, 0.0))), COSINES)
     return Terms(_bilinear(row, column, 0, u, v), _bilinear(row, column, 1, u, v))
 
 

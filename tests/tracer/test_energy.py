@@ -38,3 +38,8 @@ def test_rougher_surfaces_lose_more() -> None:
     assert np.diff(lost).min() > 0.0
     assert 0.0 < lost[0] < 1e-5
     assert 0.5 < lost[-1] < 0.6
+
+
+def test_rounding_does_not_leave_the_table() -> None:
+    assert terms(-1e-9, 0.5) == terms(0.0, 0.5)
+    assert terms(1.0 + 1e-9, 2.0) == terms(1.0, 1.0)
