@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from .bsdf import albedo, reflection
 from .camera import Lens, project
 from .compiled import compiled
@@ -27,8 +29,11 @@ def describe(
 ) -> None:
     """Write what is known of the surface, met at `b`, `c` of `triangle`, by a ray along `direction`."""
     materials, material = tables.materials, surface.material
+    features.hit_distance[pixel, 0] = features.hit_distance[pixel, 1] = 0.0
     if materials.transmissive[material]:
         features.roughness[pixel] = 0.0
+        for channel in range(3):
+            features.albedo[pixel, channel] = 1.0
     else:
         base = base_colour(materials, material, surface.u, surface.v)
         metallic, roughness = materials.metallic[material], materials.roughness[material]
@@ -50,7 +55,13 @@ def describe(
 
 @compiled
 def describe_outside(lens: Lens, before: Before, direction: Vec3, pixel: int, features: Features) -> None:
-    """Write the motion of a point infinitely far away; all else is as it was where nothing was hit."""
+    """Write what is known where nothing was hit: the motion of a point infinitely far away."""
+    for channel in range(3):
+        features.albedo[pixel, channel] = 1.0
+        features.normal[pixel, channel] = 0.0
+        features.motion[pixel, channel] = 0.0
+    features.depth[pixel], features.id[pixel], features.roughness[pixel] = np.inf, 0, 1.0
+    features.hit_distance[pixel, 0] = features.hit_distance[pixel, 1] = 0.0
     now, then = project(lens, direction), project(before.lens, direction)
     for axis in range(2):
         features.motion[pixel, axis] = then[axis] - now[axis]

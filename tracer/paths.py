@@ -81,16 +81,43 @@ class Features(NamedTuple):
 
     @classmethod
     def empty(cls, count: int) -> Features:
-        """Room for `count` pixels, where nothing has been hit."""
+        """Room for `count` pixels."""
         return cls(
-            np.ones((count, 3), np.float32),
-            np.zeros((count, 3), np.float32),
-            np.full(count, np.inf, np.float32),
-            np.zeros((count, 3), np.float32),
-            np.zeros(count, np.uint32),
-            np.ones(count, np.float32),
-            np.zeros((count, 2), np.float32),
+            np.empty((count, 3), np.float32),
+            np.empty((count, 3), np.float32),
+            np.empty(count, np.float32),
+            np.empty((count, 3), np.float32),
+            np.empty(count, np.uint32),
+            np.empty(count, np.float32),
+            np.empty((count, 2), np.float32),
         )
+
+    def part(self, pixels: slice) -> Features:
+        """Those of some neighbouring pixels, which share memory."""
+        return Features(*(values[pixels] for values in self))  # type: ignore[arg-type]  # each of its own type
+
+
+class Radiance(NamedTuple):
+    """Light of N pixels, (N, 3) each: ``color = direct + indirect + emission = diffuse + specular + emission``.
+
+    Direct light was reflected once, indirect light more often; diffuse light by the diffuse lobe of the first surface.
+    """
+
+    color: Float32
+    direct: Float32
+    indirect: Float32
+    diffuse: Float32
+    specular: Float32
+    emission: Float32
+
+    @classmethod
+    def empty(cls, count: int) -> Radiance:
+        """Room for `count` pixels."""
+        return cls(*(np.empty((count, 3), np.float32) for _ in cls._fields))
+
+    def part(self, pixels: slice) -> Radiance:
+        """That of some neighbouring pixels, which shares memory."""
+        return Radiance(*(values[pixels] for values in self))
 
 
 class Before(NamedTuple):

@@ -15,19 +15,10 @@ from svgf_cl.frame import Frame
 from .camera import Lens
 from .errors import SceneError
 from .integrator import trace
-from .paths import (
-    DIRECT_DIFFUSE,
-    DIRECT_SPECULAR,
-    EMISSION,
-    INDIRECT_DIFFUSE,
-    INDIRECT_SPECULAR,
-    Before,
-    Draws,
-    Features,
-)
+from .paths import Before, Draws, Features, Radiance
 from .sampling import pixel_jitter, stream_key
 from .scene import Moment
-from .shading import pick_moments, spread
+from .shading import pick_moments, spread, sum_up
 from .shot import Shot
 from .vectors import Float32, Float64
 
@@ -41,6 +32,8 @@ MOMENTS = 16
 
 # What a stream of random numbers is for: a reference shares no noise with the frames that are compared with it.
 FRAME, REFERENCE = 0, 1
+
+NO_FEATURES = Features.empty(0)
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -98,16 +91,13 @@ def render_frame(
     _check(spp=(spp, 1), number=(number, 0), seed=(seed, 0), bounces=(bounces, 0))
     sampler = Sampler(shot, number, stream=FRAME, seed=seed, jitter=jitter, bounces=bounces)
     count = shot.shape[0] * shot.shape[1]
-    features = Features.empty(count)
-    radiance = Radiance(*(np.empty((count, 3), np.float32) for _ in Radiance._fields))
+    features, radiance = Features.empty(count), Radiance.empty(count)
 
     def finish(pixels: slice) -> None:
-        light, described = sampler.trace(pixels, 0, described=True)
+        light = sampler.trace(pixels, 0, features.part(pixels))
         for sample in range(1, spp):
-            light += sampler.trace(pixels, sample)[0]
-        light /= spp
-        for target, values in zip((*features, *radiance), (*described, *Radiance.of(light)), strict=True):
-            target[pixels] = values
+            light += sampler.trace(pixels, sample)
+        sum_up(light, spp, radiance.part(pixels))
 
     for _ in _in_threads(finish, tiles(count)):
         pass
@@ -157,45 +147,21 @@ def render_reference(
     for tile in trace_samples(
         shot, number, range(spp), stream=REFERENCE, seed=seed, jitter=jitter, bounces=bounces, rows=rows
     ):
-        total[tile.pixels] += tile.light.sum(1)
+        total[tile.pixels] += tile.radiance.color
         if progress and tile.pixels.stop == len(total):
             progress(tile.sample + 1, spp)
     return (total / spp).astype(np.float32).reshape(height, width, 3)
 
 
-class Radiance(NamedTuple):
-    """Light of N pixels, (N, 3) each: ``color = direct + indirect + emission = diffuse + specular + emission``.
-
-    Direct light was reflected once, indirect light more often; diffuse light by the diffuse lobe of the first surface.
-    """
-
-    color: Float32
-    direct: Float32
-    indirect: Float32
-    diffuse: Float32
-    specular: Float32
-    emission: Float32
-
-    @classmethod
-    def of(cls, light: Float32) -> Radiance:
-        """Sum up the kinds of light (N, 5, 3)."""
-        direct = light[:, DIRECT_DIFFUSE] + light[:, DIRECT_SPECULAR]
-        indirect = light[:, INDIRECT_DIFFUSE] + light[:, INDIRECT_SPECULAR]
-        diffuse = light[:, DIRECT_DIFFUSE] + light[:, INDIRECT_DIFFUSE]
-        specular = light[:, DIRECT_SPECULAR] + light[:, INDIRECT_SPECULAR]
-        emission = light[:, EMISSION]
-        return cls(direct + indirect + emission, direct, indirect, diffuse, specular, emission)
-
-
 class Tile(NamedTuple):
     """One sample of some neighbouring pixels, which count row by row from the first row traced.
 
-    `light` (N, 5, 3) is what `Radiance.of` takes; `features` have room for no pixel unless they were asked for.
+    `features` have room for no pixel unless they were asked for.
     """
 
     sample: int
     pixels: slice
-    light: Float32
+    radiance: Radiance
     features: Features
 
 
@@ -243,8 +209,11 @@ def trace_samples(
 
     def job(task: tuple[int, slice]) -> Tile:
         sample, pixels = task
-        within = slice(start + pixels.start, start + pixels.stop)
-        return Tile(sample, pixels, *sampler.trace(within, sample, described=described))
+        count = pixels.stop - pixels.start
+        radiance, features = Radiance.empty(count), Features.empty(count if described else 0)
+        light = sampler.trace(slice(start + pixels.start, start + pixels.stop), sample, features)
+        sum_up(light, 1, radiance)
+        return Tile(sample, pixels, radiance, features)
 
     yield from _in_threads(job, ((sample, pixels) for sample in samples for pixels in tiles((end - first) * width)))
 
@@ -258,25 +227,22 @@ class Sampler:
         self._width, self._jitter, self._bounces = shot.shape[1], jitter, bounces
         self._offset = pixel_jitter(number) if stream == FRAME else None
 
-    def trace(self, pixels: slice, sample: int, *, described: bool = False) -> tuple[Float32, Features]:
-        """One sample of neighbouring pixels, which count row by row: light (N, 5, 3), and features if asked for."""
+    def trace(self, pixels: slice, sample: int, features: Features = NO_FEATURES) -> Float32:
+        """Light (N, 5, 3) of one sample of neighbouring pixels, which count row by row, and `features` if wanted."""
         draws = Draws(self._key, sample, np.arange(pixels.start, pixels.stop))
         positions = self._positions(draws)
-        count = len(draws.pixels)
         if len(self._exposures) == 1:
-            features = Features.empty(count if described else 0)
-            return trace(*self._exposures[0], draws, positions, self._bounces, features), features
-        light, features = np.empty((count, 5, 3), np.float32), Features.empty(count if described else 0)
-        moments = np.empty(count, np.int64)
+            return trace(*self._exposures[0], draws, positions, self._bounces, features)
+        light, moments = np.empty((len(positions), 5, 3), np.float32), np.empty(len(positions), np.int64)
         pick_moments(draws, len(self._exposures), moments)
         for moment, exposure in enumerate(self._exposures):
             chosen = np.flatnonzero(moments == moment)
             part = draws._replace(pixels=draws.pixels[chosen])
-            seen = Features.empty(len(chosen) if described else 0)
+            seen = Features.empty(len(chosen) if len(features.depth) else 0)
             light[chosen] = trace(*exposure, part, positions[chosen], self._bounces, seen)
-            for target, values in zip(features, seen, strict=True) if described else ():
+            for target, values in zip(features, seen, strict=True) if len(features.depth) else ():
                 target[chosen] = values
-        return light, features
+        return light
 
     def _positions(self, draws: Draws) -> Float64:
         """Image positions (N, 2) of a sample's rays."""

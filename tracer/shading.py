@@ -24,7 +24,21 @@ from .gbuffer import describe, describe_outside
 from .geometry import Surface, surface_at
 from .light_sampling import lamp_density, outside_density, outside_radiance, sample_light
 from .materials import base_colour, emitted_radiance
-from .paths import DIFFUSE, EMISSION, INDIRECT_DIFFUSE, SPECULAR, Before, Draws, Features, Paths, ShadowRays
+from .paths import (
+    DIFFUSE,
+    DIRECT_DIFFUSE,
+    DIRECT_SPECULAR,
+    EMISSION,
+    INDIRECT_DIFFUSE,
+    INDIRECT_SPECULAR,
+    SPECULAR,
+    Before,
+    Draws,
+    Features,
+    Paths,
+    Radiance,
+    ShadowRays,
+)
 from .sampling import Random4, random4
 from .scene import Tables
 from .trees import FAR, MISS, Hits
@@ -72,6 +86,24 @@ def deposit(light: Float32, rays: ShadowRays, blocked: NDArray[np.bool_], first:
             for lobe in range(2):
                 for channel in range(3):
                     light[pixel, first + lobe, channel] += rays.light[index, lobe, channel]
+
+
+@compiled
+def sum_up(light: Float32, spp: int, radiance: Radiance) -> None:
+    """Sort the kinds of light (N, 5, 3) of so many samples into signals, per sample."""
+    for pixel in range(len(light)):
+        for channel in range(3):
+            kinds = light[pixel]
+            direct_diffuse, direct_specular = kinds[DIRECT_DIFFUSE, channel], kinds[DIRECT_SPECULAR, channel]
+            indirect_diffuse, indirect_specular = kinds[INDIRECT_DIFFUSE, channel], kinds[INDIRECT_SPECULAR, channel]
+            direct, indirect = (direct_diffuse + direct_specular) / spp, (indirect_diffuse + indirect_specular) / spp
+            emission = light[pixel, EMISSION, channel] / spp
+            radiance.color[pixel, channel] = direct + indirect + emission
+            radiance.direct[pixel, channel] = direct
+            radiance.indirect[pixel, channel] = indirect
+            radiance.diffuse[pixel, channel] = (direct_diffuse + indirect_diffuse) / spp
+            radiance.specular[pixel, channel] = (direct_specular + indirect_specular) / spp
+            radiance.emission[pixel, channel] = emission
 
 
 @compiled
