@@ -8,11 +8,15 @@ import numpy as np
 import PIL.Image
 import trimesh
 
+from .errors import SceneError
 from .geometry import Instance
 from .materials import Colour, Material
 from .motion import Keyframes, Motion
 from .textures import Image
 from .vectors import Float64
+
+# Of all textures of a file, 1 GB in memory: a few kilobytes may stand for as much.
+MAX_PIXELS = 2**28
 
 
 def instance(mesh: trimesh.Trimesh, motion: Motion, material: Material) -> Instance:
@@ -60,12 +64,22 @@ class Images:
 
     def __init__(self) -> None:
         self._unpacked: dict[tuple[int, str], tuple[PIL.Image.Image, Image]] = {}
+        self._room = MAX_PIXELS
 
     def pixels(self, image: PIL.Image.Image | None, mode: str) -> Image | None:
-        """The image as (h, w, channels) with the channels of `mode`, such as ``"RGB"``; None for none."""
+        """The image as (h, w, channels) with the channels of `mode`, such as ``"RGB"``; None for none.
+
+        Raises
+        ------
+        SceneError
+            The file's images are too large together.
+        """
         if image is None:
             return None
         key = (id(image), mode)
         if key not in self._unpacked:
+            self._room -= image.width * image.height
+            if self._room < 0:
+                raise SceneError(f"images: expected at most {MAX_PIXELS} pixels in all, found more")
             self._unpacked[key] = (image, np.asarray(image.convert(mode)))  # the image stays, and with it its id
         return self._unpacked[key][1]

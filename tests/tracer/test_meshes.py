@@ -6,6 +6,7 @@ import pytest
 import trimesh
 
 from tests.tracer.gltf_files import CORNERS, NORMAL
+from tracer import SceneError, meshes
 from tracer.materials import Material
 from tracer.meshes import Images, instance
 from tracer.motion import Keyframes, Motion, Track
@@ -57,3 +58,12 @@ def test_an_image_is_unpacked_once_for_each_use() -> None:
     assert (colour.shape, alpha.shape) == ((3, 2, 3), (3, 2, 4))
     assert images.pixels(image, "RGB") is colour
     assert images.pixels(None, "RGB") is None
+
+
+def test_images_that_are_too_large_together_are_not_unpacked(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(meshes, "MAX_PIXELS", 12)
+    images, first = Images(), PIL.Image.new("RGB", (2, 3))
+    for image in (first, first, PIL.Image.new("RGB", (2, 3))):
+        images.pixels(image, "RGB")
+    with pytest.raises(SceneError, match="images: expected at most 12 pixels in all"):
+        images.pixels(PIL.Image.new("RGB", (1, 1)), "RGB")

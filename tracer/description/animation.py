@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Annotated, Literal
 
 import numpy as np
@@ -38,6 +39,8 @@ class Rotation(Animation, title="rigid rotation"):
     def _agree(self) -> Rotation:
         if self.times_s is not None and len(self.times_s) != len(self.angle_deg):
             raise ValueError(f"expected as many times_s as angle_deg, {len(self.angle_deg)}, found {len(self.times_s)}")
+        if any(abs(after - before) >= 180.0 for before, after in pairwise(self.angle_deg)):
+            raise ValueError(f"expected angles less than 180 apart, found {self.angle_deg}")
         return self
 
     def motion(self) -> Motion:
@@ -66,6 +69,8 @@ class Keyframed(Animation, title="keyframes"):
                 raise ValueError(
                     f"expected as many values of {name} as times_s, {len(self.times_s)}, found {len(values)}"
                 )
+        if not all(map(any, self.rotation or [])):
+            raise ValueError("expected quaternions of a length above 0 as rotation, found one of 0")
         if not self._given():
             raise ValueError("expected a translation, a rotation or a scale, found none")
         return self

@@ -26,7 +26,7 @@ EXTENSION = "KHR_lights_punctual"
 
 
 def read_lights(gltf: Gltf, nodes: Nodes) -> Iterator[Light]:
-    """The lights of the scene's nodes."""
+    """The lights of the scene's nodes; a directional one keeps the direction it has at the start."""
     known = gltf.document.get("extensions", {}).get(EXTENSION, {}).get("lights", [])
     for chain in nodes.chains():
         extension = nodes.node(chain).get("extensions", {}).get(EXTENSION)

@@ -6,12 +6,12 @@ import math
 from typing import Any
 
 import numpy as np
-import PIL.Image
 import trimesh
 
 from tracer.errors import SceneError
 from tracer.materials import Material
 from tracer.meshes import Images, colour, unnamed_material
+from tracer.textures import Image
 
 BLACK, WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 
@@ -58,7 +58,7 @@ class Materials:
         if cutoff is not None and opacity < cutoff:
             return None
         strength = _extension(document, "emissive_strength").get("emissiveStrength", 1.0)
-        rough, metal = _means(source.metallicRoughnessTexture)
+        rough, metal = _means(self._images.pixels(source.metallicRoughnessTexture, "RGB"))
         transmissive = _extension(document, "transmission").get("transmissionFactor", 0.0) >= CUTOFF
         return Material(
             colour(factor),
@@ -98,9 +98,9 @@ def _coat(document: dict[str, Any]) -> float:
     return float((1.0 + root) / (1.0 - root))
 
 
-def _means(image: PIL.Image.Image | None) -> tuple[float, float]:
+def _means(image: Image | None) -> tuple[float, float]:
     """Roughness and metalness, 0..1, averaged over their texture, whose channels two and three they are."""
     if image is None:
         return 1.0, 1.0
-    _, rough, metal = np.asarray(image.convert("RGB")).mean((0, 1)) / 255.0
+    _, rough, metal = image.mean((0, 1)) / 255.0
     return float(rough), float(metal)

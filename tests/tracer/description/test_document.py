@@ -73,6 +73,7 @@ def change(path: str, value: Any) -> Callable[[dict[str, Any]], None]:
     return apply
 
 
+STILL = {"kind": "keyframes", "nodes": ["door"], "times_s": [0], "rotation": [[0, 0, 0, 0]]}
 SUN_AND_SKIES = [WHOLE["lights"][0], *2 * [{"type": "sky_constant", "radiance": [1, 1, 1]}]]
 
 
@@ -96,6 +97,12 @@ SUN_AND_SKIES = [WHOLE["lights"][0], *2 * [{"type": "sky_constant", "radiance": 
         ("materials.glass.roughness", 0.3, "materials.glass.roughness: expected less than or equal to 0, found 0.3"),
         ("materials.wood.type", "wood", "materials.wood: expected 'type' to be one of 'diffuse', 'plastic', "),
         ("animation.times_s", [1, 2, 3], "animation: expected as many times_s as angle_deg, 2, found 3"),
+        (
+            "animation.angle_deg",
+            [0, 90, 270],
+            "animation: expected angles less than 180 apart, found [0.0, 90.0, 270.0]",
+        ),
+        ("animation", STILL, "animation: expected quaternions of a length above 0 as rotation, found one of 0"),
         ("animation.nodes", [], "animation.nodes: expected at least 1 item, found []"),
         (
             "animation",
