@@ -1,50 +1,95 @@
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tracer.camera import OUTSIDE, Camera, CameraPath
+from tracer.camera import OUTSIDE, Camera, CameraPath, Lens, project, ray_through
 from tracer.errors import SceneError
 
 AHEAD = Camera((0, 0, 0), (0, 0, -1), fov_y=90.0)
+SHAPE = (240, 320)
+
+
+def direction(camera: Camera, x: float, y: float, shape: tuple[int, int]) -> np.ndarray:
+    """The direction of the ray through an image position, at depth 1."""
+    _, way = ray_through(camera.lens(shape), x, y, 0.0, 0.0)
+    return way / np.dot(way, camera.basis()[2])
+
+
+def seen(lens: Lens, point: np.ndarray) -> np.ndarray:
+    """Where a point of the world is seen, (x, y, depth)."""
+    return np.array(project(lens, tuple(np.subtract(point, lens.position).tolist())))
 
 
 def test_the_middle_of_the_image_looks_ahead() -> None:
-    direction = AHEAD.directions(np.array([2.0]), np.array([1.0]), (3, 5))
-    np.testing.assert_allclose(direction[:, 0], (0, 0, -1), atol=1e-12)
+    np.testing.assert_allclose(direction(AHEAD, 2.0, 1.0, (3, 5)), (0, 0, -1), atol=1e-12)
 
 
 def test_rows_run_down_and_columns_to_the_right() -> None:
-    x, y, _ = AHEAD.directions(np.array([0.0, 3.0]), np.array([0.0, 1.0]), (2, 4))
-    assert x[0] < 0 < x[1]
-    assert y[0] > 0 > y[1]
+    first, last = direction(AHEAD, 0.0, 0.0, (2, 4)), direction(AHEAD, 3.0, 1.0, (2, 4))
+    assert first[0] < 0 < last[0]
+    assert first[1] > 0 > last[1]
 
 
 def test_the_field_of_view_spans_the_height() -> None:
-    top = AHEAD.directions(np.array([0.0]), np.array([-0.5]), (8, 1))
-    np.testing.assert_allclose(top[:, 0], (0, 1, -1), atol=1e-12)
+    np.testing.assert_allclose(direction(AHEAD, 0.0, -0.5, (8, 1)), (0, 1, -1), atol=1e-12)
 
 
+@settings(deadline=None)  # the first call compiles
 @given(
-    st.tuples(*[st.floats(-5, 5)] * 3),
-    st.floats(-30, 400),
-    st.floats(-30, 300),
-    st.floats(0.1, 100),
-    st.floats(1, 150),
+    st.tuples(*[st.floats(-5, 5)] * 3), st.floats(-30, 400), st.floats(-30, 300), st.floats(0.1, 100), st.floats(1, 150)
 )
-def test_project_inverts_directions(
+def test_project_finds_where_a_ray_went_through(
     position: tuple[float, float, float], x: float, y: float, depth: float, fov: float
 ) -> None:
     camera = Camera(position, (7, 8, 9), (0.1, 1, 0.2), fov)
-    offset = depth * camera.directions(np.array([x]), np.array([y]), (240, 320))
-    np.testing.assert_allclose(camera.project(offset, (240, 320))[:, 0], (x, y, depth), rtol=1e-9, atol=1e-7)
+    point = position + depth * direction(camera, x, y, SHAPE)
+    np.testing.assert_allclose(seen(camera.lens(SHAPE), point), (x, y, depth), rtol=1e-9, atol=1e-7)
 
 
-def test_points_behind_the_camera_land_outside() -> None:
-    behind = np.array([[0.0, 1.0], [0.0, 0.0], [1.0, 0.0]])
-    np.testing.assert_array_equal(AHEAD.project(behind, (9, 9))[:2], OUTSIDE)
+@pytest.mark.parametrize("behind", [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0)])
+def test_points_behind_the_camera_land_outside(behind: tuple[float, float, float]) -> None:
+    assert project(AHEAD.lens((9, 9)), behind)[:2] == (OUTSIDE, OUTSIDE)
+
+
+@settings(deadline=None)
+@given(st.floats(0, 319), st.floats(0, 239), st.floats(0, 0.999), st.floats(0, 0.999))
+def test_rays_through_all_of_the_lens_meet_in_the_plane_of_focus(x: float, y: float, u: float, v: float) -> None:
+    camera = Camera((1, 2, 3), (4, 0, -1), aperture=0.5)
+    lens, forward = camera.lens(SHAPE), camera.basis()[2]
+    origin, way = ray_through(lens, x, y, u, v)
+    assert math.dist(origin, camera.position) <= 0.25 + 1e-12
+    assert np.dot(np.subtract(origin, camera.position), forward) == pytest.approx(0.0, abs=1e-12)
+    in_focus = np.add(origin, np.multiply(way, math.dist((1, 2, 3), (4, 0, -1)) / np.dot(way, forward)))
+    np.testing.assert_allclose(seen(lens, in_focus)[:2], (x, y), atol=1e-6)
+
+
+def test_the_lens_is_sampled_evenly() -> None:
+    lens = Camera((0, 0, 0), (0, 0, -1), aperture=2.0).lens(SHAPE)
+    u = (np.mgrid[:64, :64].reshape(2, -1).T + 0.5) / 64
+    origins = np.array([ray_through(lens, 0.0, 0.0, a, b)[0] for a, b in u.tolist()])
+    np.testing.assert_allclose(origins.mean(0), 0, atol=1e-6)
+    np.testing.assert_allclose(origins.T @ origins / len(origins), np.diag((0.25, 0.25, 0.0)), atol=1e-3)
+
+
+@pytest.mark.parametrize("distance", [2.0, 7.0, 50.0])
+def test_a_pixel_covers_the_circle_of_confusion_of_a_thin_lens(distance: float) -> None:
+    camera = Camera((0, 0, 0), (0, 0, -4), aperture=0.5)
+    lens = camera.lens(SHAPE)
+    points = []
+    for v in np.linspace(0.0, 1.0, 90, endpoint=False):
+        origin, way = ray_through(lens, 100.0, 50.0, 1.0 - 1e-12, v)
+        points.append(seen(lens, np.add(origin, np.multiply(way, distance / -way[2]))))
+    x, y, depth = np.array(points).T
+    np.testing.assert_allclose(depth, distance)
+    # Similar triangles: the lens seen from the point, at the distance of the plane of focus.
+    expected = 0.5 * abs(distance - 4.0) / (4.0 * distance) * lens.scale
+    np.testing.assert_allclose([np.ptp(x), np.ptp(y)], expected, rtol=2e-3)
+    np.testing.assert_allclose([x.mean(), y.mean()], (100.0, 50.0), atol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -78,13 +123,21 @@ def test_views_that_span_no_image_are_refused(look_at: tuple[float, float, float
         Camera((0, 0, 0), look_at)
 
 
+@pytest.mark.parametrize(
+    "wrong", [{"aperture": -0.1}, {"aperture": math.nan}, {"shutter": -0.1}, {"shutter": 1.1}, {"shutter": math.nan}]
+)
+def test_lenses_and_shutters_out_of_range_are_refused(wrong: dict[str, float]) -> None:
+    with pytest.raises(SceneError, match=r"aperture >= 0 and a shutter in 0\.\.1"):
+        Camera((0, 0, 0), (0, 0, -1), **wrong)
+
+
 def test_a_path_passes_through_its_keyframes() -> None:
-    keys = [Camera((i * i, 1, 5), (0, i, 0), fov_y=40 + i) for i in range(4)]
+    keys = [Camera((i * i, 1, 5), (0, i, 0), (0.1 * i, 1, 0), 40 + i, 0.1 * i, 0.2 * i) for i in range(4)]
     path = CameraPath.through(keys)
     for index, key in enumerate(keys):
         found = path.at(index / 3)
-        np.testing.assert_allclose(found.position, key.position, atol=1e-9)
-        np.testing.assert_allclose((*found.look_at, found.fov_y), (*key.look_at, key.fov_y), atol=1e-9)
+        for name in ("position", "look_at", "up", "fov_y", "aperture", "shutter"):
+            np.testing.assert_allclose(getattr(found, name), getattr(key, name), atol=1e-9)
 
 
 def test_two_keyframes_make_a_straight_line_at_constant_speed() -> None:
@@ -92,10 +145,23 @@ def test_two_keyframes_make_a_straight_line_at_constant_speed() -> None:
     np.testing.assert_allclose([path.at(t).position[0] for t in (0.0, 0.25, 0.5, 1.0)], (0, 1, 2, 4), atol=1e-12)
 
 
+def test_a_path_stays_at_its_ends() -> None:
+    path = CameraPath.through([Camera((0, 0, 5), (0, 0, 0)), Camera((4, 0, 5), (0, 0, 0))])
+    assert path.at(-0.5) == path.at(0.0)
+    assert path.at(1.5) == path.at(1.0)
+
+
 def test_a_path_is_smooth_at_its_keyframes() -> None:
     path = CameraPath.through([Camera((x, 0, 5), (0, 0, 0)) for x in (0, 1, 4)])
     before, at, after = (path.at(0.5 + dt).position[0] for dt in (-1e-4, 0.0, 1e-4))
     assert after - at == pytest.approx(at - before, rel=1e-3)
+
+
+def test_a_path_does_not_swing_out_of_the_ranges_of_lens_and_shutter() -> None:
+    path = CameraPath.through([Camera((0, 0, 5), (0, 0, 0), aperture=a, shutter=a) for a in (1.0, 0.0, 0.0, 1.0, 1.0)])
+    for t in np.linspace(0.0, 1.0, 41):
+        assert path.at(t).aperture >= 0.0
+        assert 0.0 <= path.at(t).shutter <= 1.0
 
 
 def test_a_static_path_stays() -> None:

@@ -3,63 +3,139 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+import pytest
 import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from tracer.geometry import Instance, Triangles
+from tracer.geometry import Instance, Triangles, cofactors, corners_of, interpolated, joined, surface_at
 from tracer.materials import Material
+from tracer.motion import Keyframes, Motion, Track
 
-DOWN = np.array([[0.0], [-1.0], [0.0]], np.float32)
+DOWN, UP = (0.0, -1.0, 0.0), (0.0, 1.0, 0.0)
+BALL = trimesh.creation.icosphere(2)
+SMOOTH = Instance(BALL.triangles, Material(), BALL.vertex_normals[BALL.faces])
+MASK = np.zeros((2, 2, 4), np.uint8)
 
-
-def at(*points: tuple[float, float, float]) -> np.ndarray:
-    return np.array(points, np.float32).T
-
-
-def test_rays_find_the_nearest_triangle(floor: Callable[[Material], Instance]) -> None:
-    roof = Instance(floor(Material()).corners + np.array((0, 2, 0)), Material())
-    triangles = Triangles([floor(Material()), roof], [0, 1])
-    hits = triangles.intersect(at((1, 1, 2), (900, 1, 2), (1, 3, 2)), np.repeat(DOWN, 3, axis=1))
-    np.testing.assert_array_equal(hits.ray, (0, 2))
-    np.testing.assert_array_equal(triangles.instance[hits.triangle], (1, 2))
-    np.testing.assert_allclose(triangles.positions(hits.triangle, hits.u, hits.v), [(1, 1), (0, 2), (2, 2)], atol=1e-4)
+matrices = st.lists(st.floats(-2, 2), min_size=9, max_size=9).map(lambda values: np.reshape(values, (3, 3)))
 
 
-def test_occlusion_ends_at_its_reach(floor: Callable[[Material], Instance]) -> None:
-    triangles = Triangles([floor(Material())], [0])
-    origin = at((0.3, 1, 0.2))
-    assert not triangles.occluded(origin, DOWN, reach=0.9)
-    assert triangles.occluded(origin, DOWN, reach=1.1)
-    assert triangles.occluded(origin, DOWN)
-    assert not triangles.occluded(origin, -DOWN)
+def moved(instance: Instance, *links: Keyframes | np.ndarray) -> Instance:
+    return Instance(instance.corners, instance.material, instance.normals, instance.uv, Motion(links))
 
 
-def test_both_normals_look_to_where_the_ray_came_from(floor: Callable[[Material], Instance]) -> None:
-    triangles = Triangles([floor(Material())], [0])
-    directions = np.concatenate([DOWN, -DOWN], axis=1)
-    surface = triangles.surface(triangles.intersect(at((0, 1, 0.5), (0, -1, 0.5)), directions), directions)
-    np.testing.assert_allclose(surface.normal[1], (1, -1))
-    np.testing.assert_allclose(surface.face_normal[1], (1, -1))
-    np.testing.assert_array_equal(surface.front, (True, False))
-    assert surface.origin[1, 0] > 0 > surface.origin[1, 1]
+def resized(*scale: float) -> Keyframes:
+    return Keyframes(scale=Track([0.0], [scale]))
 
 
-def test_rays_that_leave_a_surface_do_not_find_it_again() -> None:
-    ball = trimesh.creation.icosphere(3, 2.0)
-    triangles = Triangles([Instance(ball.triangles + 10.0, Material())], [0])
-    random = np.random.default_rng(3)
-    direction = random.normal(size=(3, 2000)).astype(np.float32)
-    origin = np.float32(10.0) - 4 * direction / np.linalg.norm(direction, axis=0)
-    surface = triangles.surface(triangles.intersect(origin, direction), direction)
-    assert surface.origin.shape == direction.shape
-    assert not triangles.occluded(surface.origin, surface.face_normal).any()
-    assert triangles.occluded(surface.origin, -surface.face_normal).all()
+def tilted(*normals: tuple[float, float, float]) -> Triangles:
+    """One triangle in the plane y = 0, face up, with normals at its corners."""
+    corners = np.array([[(0.0, 0.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)]])
+    return Triangles.of([Instance(corners, Material(), np.array([normals]))], [1], [0], 0.0)
 
 
-def test_smooth_normals_are_interpolated() -> None:
-    ball = trimesh.creation.icosphere(3)
-    smooth = Instance(ball.triangles, Material(), ball.vertex_normals[ball.faces])
-    direction = np.array([[-0.2, 0.5], [-0.5, 0.1], [-0.7, -0.3]], np.float32)
-    for instance, tolerance in ((smooth, 0.003), (Instance(ball.triangles, Material()), 0.15)):
-        triangles = Triangles([instance], [0])
-        surface = triangles.surface(triangles.intersect(-3 * direction, direction), direction)
-        np.testing.assert_allclose(surface.normal, -direction / np.linalg.norm(direction, axis=0), atol=tolerance)
+def test_an_instance_is_masked_where_both_image_and_cutoff_are_given() -> None:
+    corners = np.zeros((1, 3, 3))
+    assert Instance(corners, Material(base_texture=MASK, alpha_cutoff=0.5)).masked
+    assert not Instance(corners, Material(base_texture=MASK)).masked
+    assert not Instance(corners, Material(alpha_cutoff=0.5)).masked
+
+
+def test_motion_carries_corners() -> None:
+    slide = Motion.sliding([0.0, 1.0], [(0, 0, 0), (2, 4, 6)])
+    body = moved(SMOOTH, *slide.links, resized(1.0, 2.0, 3.0))
+    np.testing.assert_allclose(body.corners_at(0.5), SMOOTH.corners * (1, 2, 3) + (1, 2, 3))
+
+
+@pytest.mark.parametrize("scale", [(1.0, 1.0, 1.0), (1.0, 5.0, 0.2), (1e-3, 1e-3, 1e-3), (-1.0, 1.0, 1.0)])
+def test_normals_stay_across_their_surface_however_it_is_stretched(scale: tuple[float, float, float]) -> None:
+    flat = Instance(BALL.triangles, Material())
+    turn = Motion.turning((0, 0, 0), (1, 2, 3), [0.0], [70.0])
+    expected = moved(flat, *turn.links, resized(*scale)).normals_at(0.0)
+    face = np.repeat(flat.normals_at(0.0)[:, :1], 3, axis=1)
+    found = moved(Instance(BALL.triangles, Material(), face), *turn.links, resized(*scale)).normals_at(0.0)
+    np.testing.assert_allclose(found, expected, atol=1e-9)
+
+
+@given(matrices)
+def test_cofactors_are_the_inverse_transpose_up_to_length(matrix: np.ndarray) -> None:
+    if abs(np.linalg.det(matrix)) < 1e-3:
+        return
+    expected = np.linalg.det(matrix) * np.linalg.inv(matrix).T
+    found = cofactors(matrix)
+    np.testing.assert_allclose(found * np.abs(matrix).max() ** 2, expected, atol=1e-9)
+
+
+def test_a_body_without_thickness_has_normals_too() -> None:
+    flattened = moved(SMOOTH, resized(1.0, 0.0, 1.0))
+    normals = flattened.normals_at(0.0)
+    assert np.isfinite(normals).all()
+    np.testing.assert_allclose(np.abs(normals[SMOOTH.normals[..., 1] > 0.1, 1]), 1.0)
+
+
+def test_triangles_know_where_they_come_from(floor: Callable[..., Instance]) -> None:
+    found = Triangles.of([floor(Material()), SMOOTH], [3, 1], [0, 7], 0.0)
+    np.testing.assert_array_equal(found.instance, [3] * 2 + [1] * len(SMOOTH.corners))
+    np.testing.assert_array_equal(found.material, [0] * 2 + [7] * len(SMOOTH.corners))
+    assert found.instance.dtype == np.uint32
+    np.testing.assert_array_equal(found.uv[2:], 0)
+    both = joined(found, found)
+    assert len(both.corners) == len(both.normals) == len(both.uv) == len(both.material) == 2 * len(found.corners)
+
+
+def test_triangles_are_kept_as_a_corner_and_two_edges(floor: Callable[..., Instance]) -> None:
+    found = Triangles.of([floor(Material())], [1], [0], 0.0)
+    np.testing.assert_array_equal(found.corners[0], [(-50, 0, 50), (100, 0, 0), (100, 0, -100)])
+    np.testing.assert_array_equal(found.corners, corners_of([floor(Material())], 0.0))
+    np.testing.assert_array_equal(interpolated(found.corners, 0, 0.25, 0.5), (25, 0, -25 + 25))
+    assert not len(Triangles.of([], [], [], 0.0).corners)
+
+
+def test_both_normals_look_to_where_the_ray_came_from(floor: Callable[..., Instance]) -> None:
+    triangles = Triangles.of([floor(Material())], [1], [4], 0.0)
+    for direction, side in ((DOWN, 1.0), (UP, -1.0)):
+        surface = surface_at(triangles, 0, 0.25, 0.5, direction)
+        assert surface.normal == surface.face_normal == (0.0, side, 0.0)
+        assert surface.front == (side > 0)
+        assert surface.point == (25.0, 0.0, 0.0)
+        assert (surface.u, surface.v) == (0.75, 0.5)
+        assert surface.material == 4
+
+
+def test_smooth_normals_are_interpolated_and_made_unit() -> None:
+    triangles = tilted((0.6, 0.8, 0.0), (-0.6, 0.8, 0.0), (0.0, 0.8, 0.6))
+    np.testing.assert_allclose(surface_at(triangles, 0, 0.5, 0.0, DOWN).normal, (0, 1, 0), atol=1e-6)
+    np.testing.assert_allclose(
+        surface_at(triangles, 0, 0.0, 0.5, DOWN).normal, np.array((0.3, 0.8, 0.3)) / np.sqrt(0.82), atol=1e-6
+    )
+
+
+def test_shading_normals_that_look_away_from_the_ray_give_way_to_the_faces() -> None:
+    triangles = tilted(*[(0.6, 0.8, 0.0)] * 3)
+    np.testing.assert_allclose(surface_at(triangles, 0, 0.2, 0.2, (0.0, -1.0, 0.0)).normal, (0.6, 0.8, 0.0))
+    assert surface_at(triangles, 0, 0.2, 0.2, (0.96, -0.28, 0.0)).normal == (0.0, 1.0, 0.0)
+
+
+def test_shading_normals_that_look_below_the_face_are_turned() -> None:
+    surface = surface_at(tilted(*[(0.0, -1.0, 0.0)] * 3), 0, 0.2, 0.2, DOWN)
+    np.testing.assert_array_equal(surface.normal, (0, 1, 0))
+
+
+@pytest.mark.parametrize("normal", [(0.0, 0.0, 0.0), (np.nan, 0.0, 0.0)])
+def test_shading_normals_that_are_none_give_way_to_the_faces(normal: tuple[float, float, float]) -> None:
+    assert surface_at(tilted(*[normal] * 3), 0, 0.2, 0.2, DOWN).normal == (0.0, 1.0, 0.0)
+
+
+@settings(deadline=None)
+@given(st.integers(0, len(BALL.faces) - 1), st.floats(0, 1), st.floats(0, 1), st.tuples(*[st.floats(-1, 1)] * 3))
+def test_normals_are_unit_and_on_the_rays_side(number: int, b: float, c: float, direction: tuple) -> None:
+    length = np.linalg.norm(direction)
+    if length < 1e-3:
+        return
+    direction = tuple(np.divide(direction, length).tolist())
+    triangles = Triangles.of([SMOOTH], [1], [0], 0.0)
+    surface = surface_at(triangles, number, b * (1.0 - c), c, direction)
+    for normal in (surface.normal, surface.face_normal):
+        assert np.linalg.norm(normal) == pytest.approx(1.0)
+        assert np.dot(normal, direction) <= 0.0
+    assert np.dot(surface.normal, surface.face_normal) > 0.0

@@ -1,48 +1,57 @@
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
+import pytest
 
-from tracer.geometry import Instance, Triangles
-from tracer.lights import AreaLights
-from tracer.materials import Material, MaterialTable
-
-
-def lights(instances: list[Instance]) -> AreaLights:
-    materials = [instance.material for instance in instances]
-    return AreaLights(Triangles(instances, range(len(instances))), materials, MaterialTable(materials))
+from tracer.errors import SceneError
+from tracer.lights import PointLight, Sun
+from tracer.motion import Keyframes, Motion, Track
 
 
-def lamp(*emission: float) -> Material:
-    return Material((0.0, 0.0, 0.0), emission=emission)
+def test_a_light_at_rest_is_where_it_was_put() -> None:
+    position, direction = PointLight((1, 2, 3), (1, 1, 1), direction=(0, 0, -5)).placed(7.0)
+    np.testing.assert_array_equal(position, (1, 2, 3))
+    np.testing.assert_array_equal(direction, (0, 0, -1))
 
 
-def test_power_is_the_mean_of_radiance_over_density(quad: Callable[..., Instance]) -> None:
-    small = quad((0, 0, 0), (1, 0, 0), (0, 1, 0), lamp(1, 2, 3))
-    large = quad((0, 0, 9), (3, 0, 0), (0, 2, 0), lamp(4, 0, 1))
-    dark = quad((0, 0, 5), (9, 0, 0), (0, 9, 0))
-    found = lights([small, dark, large])
-    assert found.count == 4
-    _, _, radiance = found.sample(np.random.default_rng(1).random((3, 40_000), np.float32))
-    np.testing.assert_allclose(radiance.mean(1), (1 + 6 * 4, 2, 3 + 6), rtol=0.02)
+def test_motion_carries_position_and_direction() -> None:
+    half_turn = Motion.turning((0, 0, 0), (0, 1, 0), [0.0, 1.0, 2.0], [0.0, 90.0, 180.0])
+    grown = Keyframes(scale=Track([0.0], [(2.0, 2.0, 2.0)]))
+    light = PointLight((1, 2, 3), (1, 1, 1), direction=(0, 0, -1), motion=Motion([*half_turn.links, grown]))
+    position, direction = light.placed(2.0)
+    np.testing.assert_allclose(position, (-2, 4, -6), atol=1e-12)
+    np.testing.assert_allclose(direction, (0, 0, 1), atol=1e-12)
 
 
-def test_samples_lie_on_the_lamps_and_face_their_front(quad: Callable[..., Instance]) -> None:
-    found = lights([quad((1, 2, 3), (2, 0, 0), (0, 4, 0), lamp(1, 1, 1))])
-    position, normal, _ = found.sample(np.random.default_rng(1).random((3, 10_000), np.float32))
-    np.testing.assert_allclose(position.min(1), (1, 2, 3), atol=0.05)
-    np.testing.assert_allclose(position.max(1), (3, 6, 3), atol=0.05)
-    np.testing.assert_allclose(position.mean(1), (2, 4, 3), atol=0.05)
-    np.testing.assert_allclose(normal, np.repeat([[0.0], [0.0], [1.0]], 10_000, axis=1))
+@pytest.mark.parametrize(
+    ("wrong", "named"),
+    [
+        ({"direction_to_light": (0.0, 0.0, 0.0)}, "length above 0"),
+        ({"direction_to_light": (0.0, np.nan, 1.0)}, "direction"),
+        ({"irradiance": (1.0, -1.0, 1.0)}, "irradiance >= 0"),
+        ({"irradiance": (1.0, np.inf, 1.0)}, "irradiance >= 0"),
+        ({"angular_radius": -1.0}, r"\[0, 90\), got -1.0"),
+        ({"angular_radius": 90.0}, r"\[0, 90\), got 90.0"),
+    ],
+)
+def test_suns_out_of_range_are_refused(wrong: dict, named: str) -> None:
+    with pytest.raises(SceneError, match=f"sun: .*{named}"):
+        Sun(**({"direction_to_light": (0, 1, 0), "irradiance": (1, 1, 1)} | wrong))
 
 
-def test_a_textured_lamp_shines_as_its_texture_says(quad: Callable[..., Instance]) -> None:
-    image = np.zeros((1, 2, 3), np.uint8)
-    image[0, 1] = 255
-    material = Material(emission=(2.0, 2.0, 2.0), emission_texture=np.repeat(image, 64, axis=1))
-    position, _, radiance = lights([quad((0, 0, 0), (1, 0, 0), (0, 1, 0), material)]).sample(
-        np.random.default_rng(1).random((3, 20_000), np.float32)
-    )
-    assert radiance[0, (position[0] > 0.02) & (position[0] < 0.48)].max() == 0
-    np.testing.assert_allclose(radiance.mean(1), 1.0, rtol=0.03)
+@pytest.mark.parametrize(
+    ("wrong", "named"),
+    [
+        ({"position": (0.0, np.inf, 0.0)}, "finite position"),
+        ({"direction": (0.0, 0.0, 0.0)}, "direction"),
+        ({"intensity": (np.nan, 1.0, 1.0)}, "intensity >= 0"),
+        ({"intensity": (-1.0, 1.0, 1.0)}, "intensity >= 0"),
+        ({"inner_angle": 50.0, "outer_angle": 40.0}, "got 50.0, 40.0"),
+        ({"inner_angle": -1.0}, "got -1.0, 180.0"),
+        ({"outer_angle": 181.0}, "got 180.0, 181.0"),
+        ({"reach": 0.0}, "reach above 0, got 0.0"),
+    ],
+)
+def test_lights_out_of_range_are_refused(wrong: dict, named: str) -> None:
+    with pytest.raises(SceneError, match=f"light: .*{named}"):
+        PointLight(**({"position": (0, 0, 0), "intensity": (1, 1, 1)} | wrong))

@@ -1,22 +1,48 @@
 from __future__ import annotations
 
+import math
+
 import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
 
-from tracer.sampling import (
-    JITTER_PERIOD,
-    cosine_directions,
-    halton,
-    pixel_jitter,
-    random_stream,
-    sphere_directions,
-    triangle_coordinates,
-)
+from tracer.compiled import compiled
+from tracer.render import FRAME, REFERENCE
+from tracer.sampling import JITTER_PERIOD, halton, on_circle, pixel_jitter, random4, stream_key
 
-COUNT = 20_000
+COUNT = 1 << 16
+ARGUMENTS = ("key", "pixel", "sample", "draw")
+# Neighbouring streams of random numbers: as many as are compared with each other in one picture.
+STREAMS = [(FRAME, 0, 0), (REFERENCE, 0, 0), (FRAME, 1, 0), (FRAME, 0, 1), (REFERENCE, 1, 0), (REFERENCE, 0, 1)]
 
 
-def uniform(rows: int) -> np.ndarray:
-    return random_stream(1).random((rows, COUNT), dtype=np.float32)
+@compiled
+def fill(arguments: NDArray[np.int64], out: NDArray[np.float64]) -> None:
+    for n in range(len(arguments)):
+        out[n, 0], out[n, 1], out[n, 2], out[n, 3] = random4(
+            arguments[n, 0], arguments[n, 1], arguments[n, 2], arguments[n, 3]
+        )
+
+
+def draw(**varied: int | NDArray[np.int64]) -> NDArray[np.float64]:
+    """Draws (COUNT, 4) over varied arguments; the others are 3."""
+    arguments = np.full((COUNT, 4), 3)
+    for name, values in varied.items():
+        arguments[:, ARGUMENTS.index(name)] = values
+    result = np.empty((COUNT, 4))
+    fill(arguments, result)
+    return result
+
+
+def assert_uniform(values: NDArray[np.float64], cells: int) -> None:
+    """That points (N, D) in the unit cube fill its cells evenly: the chi-squared sum is that of its degrees."""
+    counts, _ = np.histogramdd(values, bins=cells, range=[(0.0, 1.0)] * values.shape[1])
+    expected = len(values) / counts.size
+    freedom = counts.size - 1
+    surprise = (((counts - expected) ** 2 / expected).sum() - freedom) / np.sqrt(2.0 * freedom)
+    assert abs(surprise) < 5.0
 
 
 def test_halton_starts_as_in_the_books() -> None:
@@ -32,33 +58,66 @@ def test_jitter_repeats_after_16_frames_and_not_before() -> None:
     assert np.abs(offsets).max() < 0.5
 
 
-def test_streams_differ_by_every_part_of_their_key() -> None:
-    first = random_stream(0, 1, 2).random(8)
-    np.testing.assert_array_equal(first, random_stream(0, 1, 2).random(8))
-    assert not np.array_equal(first, random_stream(0, 1, 3).random(8))
-    assert not np.array_equal(first, random_stream(1, 1, 2).random(8))
+def test_random4_is_the_published_function() -> None:
+    """pcg4d of Jarzynski and Olano, in 32-bit unsigned arithmetic."""
+
+    def pcg4d(v: NDArray[np.uint32]) -> NDArray[np.uint32]:
+        v = v * np.uint32(1664525) + np.uint32(1013904223)
+        for turn in range(2):
+            for target, a, b in ((0, 1, 3), (1, 2, 0), (2, 0, 1), (3, 1, 2)):
+                v[target] += v[a] * v[b]
+            if turn == 0:
+                v ^= v >> np.uint32(16)
+        return v
+
+    with np.errstate(over="ignore"):
+        for key, pixel, sample, number in ((0, 0, 0, 0), (7, 123456, 99, 5), (2**32 - 1, 2**31, 2**20, 1)):
+            expected = pcg4d(np.array([pixel, sample, number, key], np.uint32)) / 2.0**32
+            np.testing.assert_array_equal(random4(key, pixel, sample, number), expected)
 
 
-def test_sphere_directions_are_unit_and_uniform() -> None:
-    directions = sphere_directions(uniform(2))
-    np.testing.assert_allclose(np.linalg.norm(directions, axis=0), 1, atol=1e-5)
-    np.testing.assert_allclose(directions.mean(1), 0, atol=0.02)
-    np.testing.assert_allclose(directions @ directions.T / COUNT, np.eye(3) / 3, atol=0.02)
+@pytest.mark.parametrize("argument", ARGUMENTS)
+def test_numbers_are_uniform_and_independent_along_each_argument(argument: str) -> None:
+    u = draw(**{argument: np.arange(COUNT)})
+    assert u.min() >= 0.0
+    assert u.max() < 1.0
+    for number in range(4):
+        assert_uniform(u[:, [number]], 1024)
+        for other in range(number):
+            assert_uniform(u[:, [number, other]], 32)
+    for step in (1, 2, 3, 64, 1280):
+        for number in range(4):
+            for other in range(4):
+                assert_uniform(np.stack([u[:-step, number], u[step:, other]], axis=1), 32)
 
 
-def test_cosine_directions_have_the_moments_of_the_cosine() -> None:
-    normal = np.tile(np.array([[0.6], [0.0], [0.8]], np.float32), COUNT)
-    directions = cosine_directions(normal, uniform(2))
-    cosine = (directions * normal).sum(0) / np.linalg.norm(directions, axis=0)
-    assert cosine.min() >= -1e-3
-    np.testing.assert_allclose([cosine.mean(), (cosine**2).mean()], (2 / 3, 1 / 2), atol=0.01)
+def test_numbers_are_uniform_over_pixels_and_samples_together() -> None:
+    places = np.arange(COUNT)
+    u = draw(key=stream_key(0, 0, 0), pixel=places % 256, sample=places // 256)
+    assert_uniform(u, 8)
+    # The mean over a row or a column has the spread of a mean of independent numbers.
+    for axis in (0, 1):
+        spread = u.reshape(256, 256, 4).mean(axis).std(0) * np.sqrt(256 * 12)
+        np.testing.assert_allclose(spread, 1.0, atol=5 / np.sqrt(2 * 256))
 
 
-def test_triangle_coordinates_are_uniform_over_the_triangle() -> None:
-    b, c = triangle_coordinates(uniform(2))
-    assert b.min() >= 0
-    assert c.min() >= 0
-    assert (b + c).max() <= 1 + 1e-6
-    np.testing.assert_allclose(
-        [b.mean(), c.mean(), (b * b).mean(), (b * c).mean()], (1 / 3, 1 / 3, 1 / 6, 1 / 12), atol=0.01
-    )
+def test_streams_are_not_correlated() -> None:
+    streams = np.concatenate([draw(key=stream_key(*numbers), pixel=np.arange(COUNT)) for numbers in STREAMS], axis=1)
+    correlation = np.corrcoef(streams.T) - np.eye(streams.shape[1])
+    assert np.abs(correlation).max() < 5.0 / np.sqrt(COUNT)
+    for first in range(0, streams.shape[1], 4):
+        for second in range(first):
+            assert_uniform(streams[:, [first, second]], 32)
+
+
+def test_keys_differ_by_each_of_their_numbers_and_by_their_order() -> None:
+    named = [(a, b, c) for a in range(2) for b in range(20) for c in range(200)]
+    assert len({stream_key(*numbers) for numbers in named}) == len(named)
+    assert stream_key(1, 2) == stream_key(1, 2)
+    assert all(0 <= stream_key(*numbers) < 2**32 for numbers in named)
+
+
+@settings(deadline=None)  # the first call compiles
+@given(st.floats(0.0, 1.0, exclude_max=True))
+def test_a_point_on_the_circle_is_that_of_the_library(u: float) -> None:
+    np.testing.assert_allclose(on_circle(u), (math.cos(2 * math.pi * u), math.sin(2 * math.pi * u)), atol=2e-9)

@@ -1,0 +1,54 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from tracer.camera import Camera, CameraPath
+from tracer.errors import SceneError
+from tracer.geometry import Instance
+from tracer.materials import Material
+from tracer.scene import Scene
+from tracer.shot import Shot
+
+PATH = CameraPath.through([Camera((0, 1, 5), (0, 0, 0)), Camera((4, 1, 5), (4, 0, 0))])
+
+
+@pytest.fixture(scope="module")
+def scene(floor: Callable[[Material], Instance]) -> Scene:
+    return Scene([floor(Material())], sky=(1, 1, 1), camera_path=CameraPath.static(Camera((9, 9, 9), (0, 0, 0))))
+
+
+def test_the_camera_covers_its_path_however_many_frames_there_are(scene: Scene) -> None:
+    for frames in (2, 5, 9):
+        shot = Shot(scene, (4, 4), frames, PATH)
+        assert [shot.camera(number).position[0] for number in (0, (frames - 1) / 2, frames - 1)] == [0, 2, 4]
+
+
+def test_a_single_frame_starts_the_path(scene: Scene) -> None:
+    assert Shot(scene, (4, 4), 1, PATH).camera(0).position[0] == 0
+
+
+def test_the_scenes_own_path_is_the_default(scene: Scene) -> None:
+    assert Shot(scene, (4, 4)).camera(0).position == (9, 9, 9)
+
+
+def test_a_frames_time_is_its_number_over_the_rate(scene: Scene) -> None:
+    assert Shot(scene, (4, 4), 100, fps=50.0).time(25) == 0.5
+    assert Shot(scene, (4, 4), 100).time(12.0) == 0.5
+
+
+@pytest.mark.parametrize(
+    ("wrong", "named"),
+    [
+        ({"shape": (0, 5)}, r"shape: .*\(0, 5\)"),
+        ({"shape": (5, -1)}, r"shape: .*\(5, -1\)"),
+        ({"frames": 0}, "frames: .* 0"),
+        ({"fps": 0.0}, "fps: .* 0.0"),
+        ({"fps": float("inf")}, "fps: .* inf"),
+        ({"fps": float("nan")}, "fps: .* nan"),
+    ],
+)
+def test_numbers_out_of_range_are_named(scene: Scene, wrong: dict, named: str) -> None:
+    with pytest.raises(SceneError, match=named):
+        Shot(**({"scene": scene, "shape": (4, 4)} | wrong))
