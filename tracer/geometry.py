@@ -135,8 +135,8 @@ def surface_at(triangles: Triangles, triangle: int, b: float, c: float, directio
     normal = normalise(interpolated(triangles.normals, triangle, b, c))
     if dot(normal, face_normal) < 0.0:
         normal = scale(normal, -1.0)
-    # A shading normal that looks away from the ray has nothing to say about the light that goes back along it.
-    if dot(normal, direction) >= 0.0:
+    # A shading normal that looks away from the ray, or is not a number, says nothing of the light that goes back.
+    if not dot(normal, direction) < 0.0:
         normal = face_normal
     u, v = texture_coordinates(triangles, triangle, b, c)
     point = interpolated(corners, triangle, b, c)
