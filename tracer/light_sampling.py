@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from .compiled import compiled
 from .geometry import Triangles, interpolated, texture_coordinates
 from .lights import PointLight, Sun
-from .materials import Material, Materials, emitted_radiance
+from .materials import Material, Materials, emitted_radiance, is_solid
 from .sampling import Random4, on_circle
 from .sky import SkyTable, sample_sky, sky_density, sky_radiance
 from .vec3 import Vec3, add, cross, dot, normalise, row, scale, subtract, to_world
@@ -166,10 +166,10 @@ def _sample_lamp(
     cosine = -dot(normalise(cross(edge1, edge2)), direction)
     if materials.two_sided[material]:
         cosine = abs(cosine)
-    if cosine <= 0.0 or distance == 0.0:
+    s, t = texture_coordinates(triangles, triangle, b, c)
+    if cosine <= 0.0 or distance == 0.0 or not is_solid(materials, material, s, t):
         return LightSample(direction, distance, zero, 0.0)
     density = lights.lamp_density[material] * distance * distance / cosine
-    s, t = texture_coordinates(triangles, triangle, b, c)
     return LightSample(direction, distance, scale(emitted_radiance(materials, material, s, t), 1.0 / density), density)
 
 
@@ -209,7 +209,9 @@ def _sample_point(lights: Lights, point: Vec3, u: float) -> LightSample:
 @compiled
 def _in_sun(lights: Lights, number: int, direction: Vec3) -> bool:
     radius = lights.sun_radius[number]
-    return radius > 0.0 and dot(direction, row(lights.sun_direction, number)) > math.cos(radius)
+    # Single precision leaves a unit vector a length that is off by more than a small disc's cosine.
+    cosine = dot(direction, row(lights.sun_direction, number)) / math.sqrt(dot(direction, direction))
+    return radius > 0.0 and cosine > math.cos(radius)
 
 
 @compiled

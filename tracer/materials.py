@@ -145,7 +145,7 @@ def emitted_radiance(materials: Materials, material: int, u: float, v: float) ->
 
 @compiled
 def is_solid(materials: Materials, material: int, u: float, v: float) -> bool:
-    """Whether a ray stops at texture coordinates (u, v) of a material with an alpha mask."""
+    """Whether a ray stops at texture coordinates (u, v) of a material."""
     texture = materials.base_texture[material]
     cutoff = float(materials.alpha_cutoff[material])
-    return texture < 0 or texture_opacity(materials.textures, texture, u, v) >= cutoff
+    return texture < 0 or cutoff <= 0.0 or texture_opacity(materials.textures, texture, u, v) >= cutoff
