@@ -27,10 +27,11 @@ bench: device  ## time every kernel on every device, beside rival and error; rep
 	-$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[dev,cpu,oidn]'
 	$(BIN)/python -m benchmarks --output out/bench
 
-docs: demo  ## make docs/accuracy.md, docs/scene_description.md and the picture of README again
+docs: demo  ## make docs/accuracy.md, docs/scene_description.md and the pictures of README and of the built-in scenes again
 	$(BIN)/python benchmarks/accuracy.py
 	$(BIN)/python scripts/picture.py
 	$(BIN)/python scripts/scene_description.py
+	$(BIN)/svgf-cl scenes -o docs/builtin_scenes.webp --size 320x180 --spp 128
 
 clean:  ## remove what the other targets made
 	rm -rf .venv build *.egg-info .*_cache

@@ -21,7 +21,7 @@ import numpy as np
 
 import tracer
 from svgf_cl.denoiser import Denoiser
-from svgf_cl.display import Bytes, to_bytes, write_png
+from svgf_cl.display import Bytes, to_bytes, write_image
 from svgf_cl.files import make_folder
 from svgf_cl.frame import Shape
 from svgf_cl.metrics import Metrics, measure
@@ -116,7 +116,7 @@ class Demo:
                 "reference": f"reference, {self.reference_spp} spp",
             }
             panels = {label: to_bytes(read_picture(self.path(kind, number))) for kind, label in labels.items()}
-            write_png(self.still_path(number), still(panels))
+            write_image(self.still_path(number), still(panels))
 
     def write_preview(self) -> None:
         """Write the whole sequence as an animation, noisy beside denoised."""

@@ -1,4 +1,4 @@
-"""From light to what a screen shows: exposure, the sRGB curve, 8-bit pictures as PNG files."""
+"""From light to what a screen shows: exposure, the sRGB curve, 8-bit pictures as files."""
 
 from __future__ import annotations
 
@@ -13,6 +13,10 @@ from svgf_cl.files import written_whole
 
 Linear = npt.NDArray[np.floating]
 Bytes = npt.NDArray[np.uint8]
+
+# Rec. 709.
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+MIDDLE_GREY = 0.18
 
 
 def display(linear: Linear, exposure: float = 0.0) -> npt.NDArray[np.float64]:
@@ -38,15 +42,30 @@ def display(linear: Linear, exposure: float = 0.0) -> npt.NDArray[np.float64]:
     return shown
 
 
+def automatic_exposure(linear: Linear) -> float:
+    """Stops that bring the log-average luminance of a picture (H, W, 3) to middle grey, 0.18.
+
+    Source: Reinhard et al., Photographic Tone Reproduction for Digital Images, SIGGRAPH 2002, equations 1 and 2.
+    Luminance below a thousandth of its mean counts as that: black pixels say nothing. A black picture stays as it is.
+    """
+    luminance = np.asarray(linear, np.float64) @ LUMINANCE
+    mean = luminance.mean()
+    if not mean > 0.0:
+        return 0.0
+    return float(np.log2(MIDDLE_GREY) - np.log2(np.maximum(luminance, 1e-3 * mean)).mean())
+
+
 def to_bytes(linear: Linear, exposure: float = 0.0) -> Bytes:
     """Return `display` in 8 bits; NaN becomes black."""
     return np.rint(np.nan_to_num(display(linear, exposure)) * 255).astype(np.uint8)
 
 
-def write_png(path: Path, picture: Bytes) -> None:
-    """Write a (H, W, 3) 8-bit picture as PNG, whole or not at all."""
+def write_image(path: Path, picture: Bytes) -> None:
+    """Write a (H, W, 3) 8-bit picture, whole or not at all; the suffix says how, such as .png or .webp."""
     height, width, channels = picture.shape
-    image = oiio.ImageBuf(oiio.ImageSpec(width, height, channels, "uint8"))
+    spec = oiio.ImageSpec(width, height, channels, "uint8")
+    spec.attribute("Compression", "webp:90")  # of a quality that hides nothing; PNG ignores it
+    image = oiio.ImageBuf(spec)
     with written_whole(path) as aside:
-        if not (image.set_pixels(image.roi, picture) and image.write(str(aside), fileformat="png")):
+        if not (image.set_pixels(image.roi, picture) and image.write(str(aside), fileformat=path.suffix[1:])):
             raise SequenceError(f"{path}: cannot be written ({image.geterror()})")

@@ -1,7 +1,8 @@
-"""Pictures that show what was gained: labelled panels side by side with a magnified piece, and an animated preview."""
+"""Pictures that show what was gained: labelled panels in a row or a sheet, a magnified piece, an animated preview."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from svgf_cl.display import Bytes
 from svgf_cl.files import written_whole
 
 LABEL_HEIGHT = 28
+FONT_SIZE = 16
 GAP = 4
 
 
@@ -29,12 +31,20 @@ def side_by_side(panels: Mapping[str, Bytes]) -> Bytes:
     height, width, _ = next(iter(panels.values())).shape
     sheet = Image.new("RGB", (len(panels) * (width + GAP) - GAP, height + LABEL_HEIGHT), "black")
     draw = ImageDraw.Draw(sheet)
-    font = ImageFont.load_default(16)
     for index, (label, picture) in enumerate(panels.items()):
         left = index * (width + GAP)
-        draw.text((left + width / 2, LABEL_HEIGHT / 2), label, fill="white", font=font, anchor="mm")
+        centre = left + width / 2, LABEL_HEIGHT / 2
+        draw.text(centre, label, fill="white", font=_font(label, width), anchor="mm")
         sheet.paste(Image.fromarray(picture), (left, LABEL_HEIGHT))
     return np.asarray(sheet)
+
+
+def contact_sheet(panels: Mapping[str, Bytes]) -> Bytes:
+    """Lay panels of one size in rows of about as many as there are rows, each with its label above it."""
+    labels, columns = list(panels), math.ceil(math.sqrt(len(panels)))
+    starts = range(0, len(labels), columns)
+    rows = [side_by_side({label: panels[label] for label in labels[start : start + columns]}) for start in starts]
+    return np.concatenate([np.pad(row, ((0, GAP), (0, rows[0].shape[1] - row.shape[1]), (0, 0))) for row in rows])
 
 
 def still(panels: Mapping[str, Bytes]) -> Bytes:
@@ -53,6 +63,13 @@ def worst_piece(tested: Bytes, reference: Bytes, pieces: int = 4) -> tuple[slice
     error = np.square(tested.astype(np.float64) - reference).sum(axis=-1)
     tiles = [np.s_[y * height : (y + 1) * height, x * width : (x + 1) * width] for y in rows for x in columns]
     return max(tiles, key=lambda tile: float(error[tile].sum()))
+
+
+def _font(label: str, width: int) -> ImageFont.ImageFont | ImageFont.FreeTypeFont:
+    """The usual font, or a smaller one in which `label` fits into `width` pixels."""
+    length = ImageFont.load_default(FONT_SIZE).getlength(label)
+    fitting = 0.95 * width / max(length, 1.0) * FONT_SIZE  # a little less: letters do not shrink evenly
+    return ImageFont.load_default(max(1.0, min(FONT_SIZE, fitting)))
 
 
 def magnified(picture: Bytes, shape: tuple[int, ...]) -> Bytes:

@@ -9,7 +9,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from svgf_cl import __version__
-from svgf_cl.cli import bench, compare, demo, denoise, devices, render, tune
+from svgf_cl.cli import bench, compare, demo, denoise, devices, gallery, render, tune
 from svgf_cl.errors import SvgfError
 
 # Plain help and errors: they read the same in a terminal, in a log and through grep.
@@ -20,7 +20,16 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (devices.devices, demo.demo, render.render, denoise.denoise, compare.compare, bench.bench, tune.tune):
+for command in (
+    devices.devices,
+    demo.demo,
+    gallery.scenes,
+    render.render,
+    denoise.denoise,
+    compare.compare,
+    bench.bench,
+    tune.tune,
+):
     app.command()(command)
 
 

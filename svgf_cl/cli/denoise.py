@@ -13,7 +13,7 @@ import typer
 from svgf_cl.cli.console import show_times, tracked
 from svgf_cl.cli.options import Exposure, Output, SettingTexts, parse_settings
 from svgf_cl.denoiser import Denoiser
-from svgf_cl.display import to_bytes, write_png
+from svgf_cl.display import to_bytes, write_image
 from svgf_cl.errors import SequenceError
 from svgf_cl.files import make_folder
 from svgf_cl.sequence import check_leftovers, find_frames, read_sequence, write_picture
@@ -49,7 +49,7 @@ def denoise(
     for target, picture, profile in tracked(denoised(sources, targets, settings), len(sources), "denoising"):
         write_picture(target, picture)
         if png:
-            write_png(target.with_suffix(".png"), to_bytes(picture, exposure))
+            write_image(target.with_suffix(".png"), to_bytes(picture, exposure))
         profiles.append(profile)
     show_times(profiles)
     print(f"{len(profiles)} frames in {output}")

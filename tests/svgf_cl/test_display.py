@@ -1,4 +1,4 @@
-"""Tone mapping and PNG files."""
+"""Exposure, tone mapping and picture files."""
 
 from __future__ import annotations
 
@@ -28,13 +28,35 @@ def test_nan_is_shown_black_and_infinity_white() -> None:
     assert display.to_bytes(linear).tolist() == [[[0, 255, 0]]]
 
 
+def test_automatic_exposure_brings_the_log_average_to_middle_grey() -> None:
+    linear = RNG.lognormal(size=(16, 16, 1)) * np.array([1.0, 0.5, 0.2])
+    exposed = linear * 2.0 ** display.automatic_exposure(linear)
+    luminance = exposed @ display.LUMINANCE
+    assert np.exp(np.log(luminance).mean()) == pytest.approx(0.18)
+
+
+def test_automatic_exposure_of_black_pixels_and_pictures() -> None:
+    linear = np.ones((4, 4, 3))
+    linear[0] = 0.0
+    assert display.automatic_exposure(linear) == pytest.approx(np.log2(0.18) - 0.25 * np.log2(0.75e-3))
+    assert display.automatic_exposure(np.zeros((4, 4, 3))) == 0.0
+
+
 def test_png_comes_back(tmp_path: Path) -> None:
     picture = RNG.integers(0, 256, (5, 7, 3), np.uint8)
-    display.write_png(tmp_path / "a.png", picture)
+    display.write_image(tmp_path / "a.png", picture)
     np.testing.assert_array_equal(oiio.ImageBuf(str(tmp_path / "a.png")).get_pixels(oiio.UINT8), picture)
     assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
 
 
+def test_webp_comes_back_nearly(tmp_path: Path) -> None:
+    picture = np.linspace(0, 255, 3 * 32 * 32).reshape(32, 32, 3).astype(np.uint8)
+    display.write_image(tmp_path / "a.webp", picture)
+    assert (tmp_path / "a.webp").read_bytes()[8:12] == b"WEBP"
+    back = oiio.ImageBuf(str(tmp_path / "a.webp")).get_pixels(oiio.UINT8).astype(float)
+    assert np.abs(back - picture).mean() < 4.0
+
+
 def test_an_unwritable_picture_is_an_error_that_names_it(tmp_path: Path) -> None:
     with pytest.raises(SequenceError, match=r"nowhere/a\.png: cannot be written"):
-        display.write_png(tmp_path / "nowhere" / "a.png", np.zeros((2, 2, 3), np.uint8))
+        display.write_image(tmp_path / "nowhere" / "a.png", np.zeros((2, 2, 3), np.uint8))

@@ -32,6 +32,24 @@ def test_panels_stand_side_by_side_under_their_labels() -> None:
     assert sheet[:-20, -30:].any()
 
 
+def test_a_long_label_keeps_to_its_own_panel() -> None:
+    sheet = pictures.side_by_side({"far too long for this": noise(20, 60), "": noise(20, 60)})
+    label = sheet[: pictures.LABEL_HEIGHT]
+    assert label[:, :60].any()
+    assert not label[:, 60:].any()
+
+
+def test_a_sheet_has_every_panel_in_rows() -> None:
+    panels = {f"panel {index}": noise(20, 60) for index in range(5)}
+    sheet = pictures.contact_sheet(panels)
+    down, across = pictures.LABEL_HEIGHT + 20 + pictures.GAP, 60 + pictures.GAP
+    assert sheet.shape == (2 * down, 3 * across - pictures.GAP, 3)
+    for index, panel in enumerate(panels.values()):
+        top, left = index // 3 * down + pictures.LABEL_HEIGHT, index % 3 * across
+        np.testing.assert_array_equal(sheet[top : top + 20, left : left + 60], panel)
+    assert not sheet[down:, 2 * across :].any()
+
+
 def test_the_still_magnifies_where_the_last_two_panels_differ_most() -> None:
     reference = noise(40, 80)
     tested = reference.copy()

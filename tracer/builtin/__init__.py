@@ -30,17 +30,17 @@ class Builtin:
 
 
 BUILTIN = {
-    "cornell": Builtin(cornell.make, "soft light between coloured walls, thin bars", 24),
-    "glossy": Builtin(glossy.make, "reflections of every sharpness, which move unlike their surface", 24),
-    "mirror": Builtin(mirror.make, "edges and textures that no feature of the first hit tells", 24),
-    "sliding": Builtin(sliding.make, "a texture in motion under a shadow that stays", 48),
-    "switch": Builtin(switch.make, "a lamp goes off at 0.5 s and on at 1 s: lag", 48),
-    "swing": Builtin(swing.make, "disocclusion, and a shadow that moves over still things", 48),
-    "fence": Builtin(fence.make, "bars, wires and leaves thinner than a pixel", 24),
-    "fireflies": Builtin(fireflies.make, "tiny bright lamps seen only indirectly", 24),
-    "blur": Builtin(blur.make, "depth of field and motion blur: no pixel has one depth or motion", 24),
-    "static": Builtin(static.make, "nothing moves: temporal stability of detail and soft shadows", 24),
-    "contrast": Builtin(contrast.make, "sun and darkness in one picture", 24),
+    "cornell": Builtin(cornell.make, "indirect light, thin bars", 24),
+    "glossy": Builtin(glossy.make, "reflections of every sharpness", 24),
+    "mirror": Builtin(mirror.make, "edges that no feature tells", 24),
+    "sliding": Builtin(sliding.make, "texture moves, shadow stays", 48),
+    "switch": Builtin(switch.make, "lag of a lamp off and on", 48),
+    "swing": Builtin(swing.make, "disocclusion, shadow lag", 48),
+    "fence": Builtin(fence.make, "bars and leaves below a pixel", 24),
+    "fireflies": Builtin(fireflies.make, "tiny lamps, seen indirectly", 24),
+    "blur": Builtin(blur.make, "wide lens and open shutter", 24),
+    "static": Builtin(static.make, "flicker where nothing moves", 24),
+    "contrast": Builtin(contrast.make, "sun and night in one picture", 24),
 }
 
 

@@ -36,7 +36,7 @@ def movers(name: str) -> set[int]:
 
 @pytest.mark.parametrize("name", BUILTIN)
 def test_every_scene_says_what_is_hard_and_how_many_frames_show_it(name: str) -> None:
-    assert 10 < len(BUILTIN[name].hard) < 70
+    assert 10 < len(BUILTIN[name].hard) <= 30  # it is a caption, too
     assert 24 <= BUILTIN[name].frames <= 48
 
 
