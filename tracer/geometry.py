@@ -153,14 +153,15 @@ def interpolated(values: Float32, triangle: int, b: float, c: float) -> Vec3:
 def texture_coordinates(triangles: Triangles, triangle: int, b: float, c: float) -> tuple[float, float]:
     """Texture coordinates (u, v) at barycentric coordinates of a triangle."""
     uv = triangles.uv
-    u = float(uv[triangle, 0, 0]) + b * uv[triangle, 1, 0] + c * uv[triangle, 2, 0]
-    v = float(uv[triangle, 0, 1]) + b * uv[triangle, 1, 1] + c * uv[triangle, 2, 1]
+    u = np.float64(uv[triangle, 0, 0]) + b * uv[triangle, 1, 0] + c * uv[triangle, 2, 0]
+    v = np.float64(uv[triangle, 0, 1]) + b * uv[triangle, 1, 1] + c * uv[triangle, 2, 1]
     return u, v
 
 
 @compiled
 def _row(values: Float32, triangle: int, corner: int) -> Vec3:
-    return float(values[triangle, corner, 0]), float(values[triangle, corner, 1]), float(values[triangle, corner, 2])
+    vector = values[triangle, corner]
+    return np.float64(vector[0]), np.float64(vector[1]), np.float64(vector[2])
 
 
 def _differences(values: NDArray[np.floating]) -> Float32:

@@ -25,6 +25,8 @@ from .vectors import LUMINANCE, Float64
 
 LAMPS, SUNS, POINTS, SKY = range(4)
 
+TINY = np.finfo(np.float64).tiny
+
 BLACK = (0.0, 0.0, 0.0)
 
 
@@ -41,7 +43,9 @@ class Lights(NamedTuple):
     lamp_density: Float64
     sun_direction: Float64
     sun_irradiance: Float64
-    sun_radius: Float64
+    sun_radiance: Float64
+    sun_cosine: Float64
+    sun_solid_angle: Float64
     sun_chances: Float64
     point_position: Float64
     point_direction: Float64
@@ -67,6 +71,7 @@ class Lights(NamedTuple):
         edges = triangles.corners[shining, 1:].astype(np.float64)
         power = brightness[triangles.material[shining]] * np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1) / 2
         lamps, power = shining[power > 0.0], power[power > 0.0]
+        radius = np.radians([sun.angular_radius for sun in suns])
         placed = [light.placed(time) for light in points]
         present = [len(lamps), len(suns), len(points), sky.rows.size]
         return cls(
@@ -76,7 +81,9 @@ class Lights(NamedTuple):
             brightness / (power.sum() or 1.0),
             _rows([np.divide(s.direction_to_light, np.linalg.norm(s.direction_to_light)) for s in suns]),
             _rows([s.irradiance for s in suns]),
-            np.radians([s.angular_radius for s in suns]),
+            _rows([s.irradiance for s in suns]) / np.maximum(np.pi * np.sin(radius) ** 2, TINY)[:, None],
+            np.cos(radius),
+            4.0 * np.pi * np.sin(radius / 2.0) ** 2,
             _cumulative(np.array([LUMINANCE @ s.irradiance for s in suns])),
             _rows([position for position, _ in placed]),
             _rows([direction for _, direction in placed]),
@@ -133,9 +140,9 @@ def lamp_density(lights: Lights, material: int, cosine: float, distance: float) 
 def outside_density(lights: Lights, sky: SkyTable, direction: Vec3) -> float:
     """Density per solid angle with which `sample_light` finds a direction out of the scene."""
     density = sky_density(sky, direction)
-    for number in range(len(lights.sun_radius)):
+    for number in range(len(lights.sun_cosine)):
         if _in_sun(lights, number, direction):
-            density += _chance(lights.sun_chances, number) / _solid_angle(lights.sun_radius[number])
+            density += _chance(lights.sun_chances, number) / lights.sun_solid_angle[number]
     return density / max(len(lights.kinds), 1)
 
 
@@ -143,9 +150,9 @@ def outside_density(lights: Lights, sky: SkyTable, direction: Vec3) -> float:
 def outside_radiance(lights: Lights, sky: SkyTable, direction: Vec3) -> Vec3:
     """Radiance that comes in from outside the scene, from `direction`."""
     radiance = sky_radiance(sky, direction)
-    for number in range(len(lights.sun_radius)):
+    for number in range(len(lights.sun_cosine)):
         if _in_sun(lights, number, direction):
-            radiance = add(radiance, _sun_radiance(lights, number))
+            radiance = add(radiance, row(lights.sun_radiance, number))
     return radiance
 
 
@@ -177,15 +184,15 @@ def _sample_lamp(
 def _sample_sun(lights: Lights, u: float, v: float, w: float) -> LightSample:
     number = _pick(lights.sun_chances, u)
     chance = _chance(lights.sun_chances, number)
-    radius, middle = lights.sun_radius[number], row(lights.sun_direction, number)
-    if radius == 0.0:
+    solid_angle, middle = lights.sun_solid_angle[number], row(lights.sun_direction, number)
+    if solid_angle == 0.0:
         return LightSample(middle, math.inf, scale(row(lights.sun_irradiance, number), 1.0 / chance), 0.0)
-    density = chance / _solid_angle(radius)
-    height = 2.0 * v * math.sin(radius / 2.0) ** 2  # 1 - cosine, which would lose its digits
+    density = chance / solid_angle
+    height = v * solid_angle / (2.0 * math.pi)  # 1 - cosine, which would lose its digits
     across = math.sqrt(height * (2.0 - height))
     cosine, sine = on_circle(w)
     direction = to_world((across * cosine, across * sine, 1.0 - height), middle)
-    return LightSample(direction, math.inf, scale(_sun_radiance(lights, number), 1.0 / density), density)
+    return LightSample(direction, math.inf, scale(row(lights.sun_radiance, number), 1.0 / density), density)
 
 
 @compiled
@@ -208,21 +215,10 @@ def _sample_point(lights: Lights, point: Vec3, u: float) -> LightSample:
 
 @compiled
 def _in_sun(lights: Lights, number: int, direction: Vec3) -> bool:
-    radius = lights.sun_radius[number]
     # Single precision leaves a unit vector a length that is off by more than a small disc's cosine.
-    cosine = dot(direction, row(lights.sun_direction, number)) / math.sqrt(dot(direction, direction))
-    return radius > 0.0 and cosine > math.cos(radius)
-
-
-@compiled
-def _sun_radiance(lights: Lights, number: int) -> Vec3:
-    return scale(row(lights.sun_irradiance, number), 1.0 / (math.pi * math.sin(lights.sun_radius[number]) ** 2))
-
-
-@compiled
-def _solid_angle(radius: float) -> float:
-    """Of a cone of this half angle."""
-    return 4.0 * math.pi * math.sin(radius / 2.0) ** 2
+    length = math.sqrt(dot(direction, direction))
+    along = dot(direction, row(lights.sun_direction, number))
+    return bool(lights.sun_solid_angle[number] > 0.0 and along > lights.sun_cosine[number] * length)
 
 
 @compiled

@@ -66,6 +66,9 @@ class Scene:
         self.instances = tuple(instance for instance in instances if len(instance.corners))
         self.lights, self.sky = tuple(lights), sky
         _check(self.instances)
+        constant = None if isinstance(sky, Environment) else sky
+        if constant is not None and not (np.isfinite(constant).all() and min(constant) >= 0.0):
+            raise SceneError(f"sky: expected three radiances >= 0, got {sky}")
         self.camera_path = camera_path or CameraPath.static(_framing(self.instances))
         self._prepare()
         if not self._shines():

@@ -129,7 +129,7 @@ def shade(
     for index in range(len(paths.pixel)):
         pixel, lobe = paths.pixel[index], paths.lobe[index]
         direction, throughput = row(paths.direction, index), row(paths.throughput, index)
-        density, triangle = float(paths.density[index]), hits.triangle[index]
+        density, triangle = np.float64(paths.density[index]), hits.triangle[index]
         kind = EMISSION if depth == 0 else lobe if depth == 1 else INDIRECT_DIFFUSE + lobe
         if triangle == MISS:
             shine = outside_radiance(tables.lights, tables.sky, direction)
@@ -141,7 +141,7 @@ def shade(
                 elif depth == 1:
                     features.hit_distance[pixel, lobe] = np.inf
             continue
-        b, c = float(hits.b[index]), float(hits.c[index])
+        b, c = np.float64(hits.b[index]), np.float64(hits.c[index])
         surface = surface_at(tables.triangles, triangle, b, c, direction)
         material = surface.material
         if surface.front or tables.materials.two_sided[material]:

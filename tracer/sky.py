@@ -171,14 +171,14 @@ def _position(table: SkyTable, direction: Vec3) -> tuple[float, float, float]:
 @compiled
 def _neighbours_around(position: float, count: int) -> tuple[int, int, float]:
     """The texels of a row that loops around before and after `position` in 0..count, and the weight of the latter."""
-    before = math.floor(position - 0.5)
+    before = int(np.floor(position - 0.5))
     return int(before) % count, (int(before) + 1) % count, position - 0.5 - before
 
 
 @compiled
 def _neighbours(position: float, count: int) -> tuple[int, int, float]:
     """The texels of a column before and after `position` in 0..count, and the weight of the latter."""
-    before = math.floor(position - 0.5)
+    before = int(np.floor(position - 0.5))
     return max(int(before), 0), min(int(before) + 1, count - 1), position - 0.5 - before
 
 

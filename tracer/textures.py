@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -81,9 +80,10 @@ def _texels(
     textures: Textures, texture: int, u: float, v: float
 ) -> tuple[np.uint32, np.uint32, np.uint32, np.uint32, float, float]:
     """The four texels around a point, upper left, upper right, lower left, lower right, and where it lies between."""
+    # NumPy's floor is an instruction, Python's a call.
     width, height, start = textures.widths[texture], textures.heights[texture], textures.starts[texture]
-    x, y = (u - math.floor(u)) * width - 0.5, (math.ceil(v) - v) * height - 0.5
-    left, top = math.floor(x), math.floor(y)
+    x, y = (u - np.floor(u)) * width - 0.5, (np.ceil(v) - v) * height - 0.5
+    left, top = np.floor(x), np.floor(y)
     fx, fy = x - left, y - top
     # Half a texel beyond either edge at most: no division.
     column, row = int(left), int(top)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from .compiled import compiled
@@ -15,7 +16,8 @@ Vec3 = tuple[float, float, float]
 @compiled
 def row(rows: NDArray[Any], index: int) -> Vec3:
     """Row `index` of an array (N, 3), in double precision."""
-    return float(rows[index, 0]), float(rows[index, 1]), float(rows[index, 2])
+    # Not float(), which Numba takes to leave a float32 as it is.
+    return np.float64(rows[index, 0]), np.float64(rows[index, 1]), np.float64(rows[index, 2])
 
 
 @compiled
