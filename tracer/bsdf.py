@@ -80,16 +80,16 @@ def specular_share(r: Reflection, cos_o: float) -> float:
 
 
 @compiled
-def evaluate_diffuse(r: Reflection, wo: Vec3, wi: Vec3) -> Vec3:
-    """The diffuse lobe times the cosine of `wi`; 0 below the horizon."""
-    if wo[2] <= 0.0 or wi[2] <= 0.0 or luminance(r.diffuse) <= 0.0:
+def evaluate_diffuse(r: Reflection, cos_o: float, cos_i: float) -> Vec3:
+    """The diffuse lobe times `cos_i`, for the cosines of both directions; 0 below the horizon."""
+    if cos_o <= 0.0 or cos_i <= 0.0 or luminance(r.diffuse) <= 0.0:
         return BLACK
-    lambert = scale(r.diffuse, wi[2] / math.pi)
+    lambert = scale(r.diffuse, cos_i / math.pi)
     if is_lambertian(r):
         return lambert
     # Light goes through the coat on its way in and out. Both shares, integrated over all directions, leave just what
     # the coat does not reflect.
-    o, i, mean = terms(wo[2], r.alpha), terms(wi[2], r.alpha), mean_terms(r.alpha)
+    o, i, mean = terms(cos_o, r.alpha), terms(cos_i, r.alpha), mean_terms(r.alpha)
     red, green, blue = _through(r.f0[0], o, i, mean), _through(r.f0[1], o, i, mean), _through(r.f0[2], o, i, mean)
     return multiply(lambert, (red, green, blue))
 
@@ -111,9 +111,9 @@ def evaluate_specular(r: Reflection, wo: Vec3, wi: Vec3) -> Vec3:
 
 
 @compiled
-def diffuse_density(wi: Vec3) -> float:
+def diffuse_density(cos_i: float) -> float:
     """Density of `sample_diffuse` per solid angle."""
-    return max(wi[2], 0.0) / math.pi
+    return max(cos_i, 0.0) / math.pi
 
 
 @compiled

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from .bsdf import albedo, reflection
+from .bsdf import Reflection, albedo
 from .camera import Lens, project
 from .compiled import compiled
 from .geometry import Surface, interpolated
-from .materials import base_colour
 from .paths import Before, Features
 from .scene import Tables
 from .vec3 import Vec3, dot, subtract
@@ -20,29 +19,22 @@ def describe(
     lens: Lens,
     before: Before,
     surface: Surface,
+    r: Reflection,
     triangle: int,
     b: float,
     c: float,
-    direction: Vec3,
+    outgoing: Vec3,
     pixel: int,
     features: Features,
 ) -> None:
-    """Write what is known of the surface, met at `b`, `c` of `triangle`, by a ray along `direction`."""
+    """Write what is known of the surface, met at `b`, `c` of `triangle`, that sends its light along `outgoing`."""
     materials, material = tables.materials, surface.material
+    glass = materials.transmissive[material]
+    reflectance = (1.0, 1.0, 1.0) if glass else albedo(r, min(dot(surface.normal, outgoing), 1.0))
+    for channel in range(3):
+        features.albedo[pixel, channel] = reflectance[channel]
+    features.roughness[pixel] = 0.0 if glass else materials.roughness[material]
     features.hit_distance[pixel, 0] = features.hit_distance[pixel, 1] = 0.0
-    if materials.transmissive[material]:
-        features.roughness[pixel] = 0.0
-        for channel in range(3):
-            features.albedo[pixel, channel] = 1.0
-    else:
-        base = base_colour(materials, material, surface.u, surface.v)
-        metallic, roughness = materials.metallic[material], materials.roughness[material]
-        reflectance = albedo(
-            reflection(base, metallic, roughness, materials.ior[material]), min(-dot(surface.normal, direction), 1.0)
-        )
-        for channel in range(3):
-            features.albedo[pixel, channel] = reflectance[channel]
-        features.roughness[pixel] = roughness
     now = project(lens, subtract(surface.point, lens.position))
     previous = interpolated(before.corners, triangle, b, c)
     then = project(before.lens, subtract(previous, before.lens.position))

@@ -53,7 +53,7 @@ def sampled(r: Reflection, wo: Vec3, u: NDArray[np.float64]) -> tuple[NDArray, N
         if density > 0.0:
             specular[n] = max(bsdf.evaluate_specular(r, wo, wi)) / density
         wi = bsdf.sample_diffuse(u[n, 0], u[n, 1])
-        diffuse[n] = max(bsdf.evaluate_diffuse(r, wo, wi)) / bsdf.diffuse_density(wi)
+        diffuse[n] = max(bsdf.evaluate_diffuse(r, wo[2], wi[2])) / bsdf.diffuse_density(wi[2])
     return directions, specular, diffuse
 
 
@@ -70,7 +70,9 @@ def integrated(r: Reflection, wo: Vec3, count: int) -> tuple[NDArray, NDArray]:
             wi = (math.sin(polar) * math.cos(azimuth), math.sin(polar) * math.sin(azimuth), math.cos(polar))
             solid_angle = 2.0 * root / count * step
             density[i, j] = bsdf.specular_density(r, wo, wi) * solid_angle
-            light[i, j] = (bsdf.evaluate_diffuse(r, wo, wi)[0] + bsdf.evaluate_specular(r, wo, wi)[0]) * solid_angle
+            light[i, j] = (
+                bsdf.evaluate_diffuse(r, wo[2], wi[2])[0] + bsdf.evaluate_specular(r, wo, wi)[0]
+            ) * solid_angle
     return density, light
 
 
@@ -102,9 +104,10 @@ def test_the_albedo_is_that_of_both_lobes(r: Reflection, wo: Vec3) -> None:
 @seeded
 @given(reflections, directions, directions)
 def test_both_lobes_are_reciprocal(r: Reflection, wo: Vec3, wi: Vec3) -> None:
-    for evaluate in (bsdf.evaluate_diffuse, bsdf.evaluate_specular):
-        there, back = np.array(evaluate(r, wo, wi)) / wi[2], np.array(evaluate(r, wi, wo)) / wo[2]
-        np.testing.assert_allclose(there, back, rtol=1e-9)
+    there, back = bsdf.evaluate_diffuse(r, wo[2], wi[2]), bsdf.evaluate_diffuse(r, wi[2], wo[2])
+    np.testing.assert_allclose(np.divide(there, wi[2]), np.divide(back, wo[2]), rtol=1e-9)
+    there, back = bsdf.evaluate_specular(r, wo, wi), bsdf.evaluate_specular(r, wi, wo)
+    np.testing.assert_allclose(np.divide(there, wi[2]), np.divide(back, wo[2]), rtol=1e-9)
 
 
 @seeded
@@ -151,14 +154,14 @@ def test_a_dielectric_of_refractive_index_1_is_lambertian() -> None:
     assert bsdf.specular_share(r, 0.3) == bsdf.specular_density(r, wo, wi) == 0.0
     assert bsdf.albedo(r, 0.3) == colour
     assert bsdf.evaluate_specular(r, wo, wi) == BLACK
-    np.testing.assert_allclose(bsdf.evaluate_diffuse(r, wo, wi), np.array(colour) * 0.6 / math.pi)
+    np.testing.assert_allclose(bsdf.evaluate_diffuse(r, wo[2], wi[2]), np.array(colour) * 0.6 / math.pi)
 
 
 def test_a_metal_has_no_diffuse_lobe() -> None:
     r = reflection((0.9, 0.6, 0.3), 1.0, 0.5, 1.5)
     assert r.f0 == (0.9, 0.6, 0.3)
     assert bsdf.specular_share(r, 0.7) == 1.0
-    assert bsdf.evaluate_diffuse(r, under(0.7), under(0.2)) == BLACK
+    assert bsdf.evaluate_diffuse(r, 0.7, 0.2) == BLACK
 
 
 def test_a_metal_tints_light_once_for_each_hit() -> None:
@@ -187,8 +190,8 @@ def test_a_dielectric_reflects_as_its_refractive_index_says() -> None:
 def test_nothing_comes_through_the_horizon(r: Reflection, wo: Vec3, wi: Vec3) -> None:
     below = (wi[0], wi[1], -wi[2])
     for a, b in ((wo, below), (below, wo)):
-        assert bsdf.evaluate_diffuse(r, a, b) == bsdf.evaluate_specular(r, a, b) == BLACK
-    assert bsdf.diffuse_density(below) == bsdf.specular_density(r, wo, below) == 0.0
+        assert bsdf.evaluate_diffuse(r, a[2], b[2]) == bsdf.evaluate_specular(r, a, b) == BLACK
+    assert bsdf.diffuse_density(below[2]) == bsdf.specular_density(r, wo, below) == 0.0
 
 
 def test_diffuse_samples_have_the_moments_of_the_cosine() -> None:
