@@ -97,7 +97,7 @@ class Camera:
         focus = math.dist(self.position, self.look_at)
         scale = height / (2.0 * math.tan(math.radians(self.fov_y) / 2.0))
         middle = (width - 1) / 2.0, (height - 1) / 2.0
-        return Lens(self.position, right, up, forward, scale, *middle, self.aperture / 2.0, focus)
+        return Lens(vector(self.position), right, up, forward, scale, *middle, self.aperture / 2.0, focus)
 
 
 class Lens(NamedTuple):

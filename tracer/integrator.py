@@ -51,7 +51,9 @@ def trace(
     glass = GLASS if tables.materials.transmissive.any() else 0
     last = bounces + 1 + glass
     for depth in range(last + 1):
-        if depth < last or len(tables.lights.lamps):
+        if depth == last:
+            paths.scatterings.fill(0)  # whatever they still meet, they end there
+        if depth < last or len(tables.lights.lamps) or (depth == 1 and len(features.depth)):
             hits = trees.intersect(paths.origin, paths.direction)
         else:
             hits = _escapes(trees, paths)
