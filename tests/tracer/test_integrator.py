@@ -1,7 +1,8 @@
-"""The integrator against closed forms, and against the converged image of another renderer."""
+"""Whole paths against closed forms, and against the converged image of another renderer."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,117 +10,225 @@ import numpy as np
 import pytest
 import trimesh
 
-from tracer import Camera, load_scene, render_frame, render_reference
+from tests.tracer.estimates import AT_ORIGIN, assert_mean, still, under_rectangle
+from tracer import Camera, CameraPath, Shot, load_scene, render_reference
 from tracer.geometry import Instance
+from tracer.lights import PointLight, Sun
 from tracer.materials import Material
 from tracer.scene import Scene
+from tracer.sky import Environment
 
 CORNELL = Path(__file__).parents[3] / "shared" / "scenes" / "cornell_box"
 
 ALBEDO = (0.5, 0.25, 0.75)
+MATT = Material(ALBEDO)
 SKY = (1.0, 2.0, 3.0)
-# Looks at one point of the floor, the origin, through a very long lens, from below all lamps.
-AT_ORIGIN = Camera((0.15, 0.5, 0.2), (0.0, 0.0, 0.0), fov_y=0.01)
+BLACK, WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
+AT_BALL = Camera((0, 0, 5), (0, 0, 0), fov_y=15.0)
+
+ROUGHNESSES = (0.0, 0.1, 0.3, 0.6, 1.0)
+# Surfaces that reflect all light.
+WHITES = {f"metal {r}": Material(WHITE, metallic=1.0, roughness=r) for r in ROUGHNESSES}
+WHITES |= {f"coated {r}": Material(WHITE, roughness=r, ior=1.5) for r in ROUGHNESSES}
+WHITES["matt"] = Material(WHITE)
+
+Quad = Callable[..., Instance]
+Floor = Callable[[Material], Instance]
 
 
-def under_rectangle(width: float, depth: float, height: float) -> float:
-    """Form factor from a point to a rectangle straight above its normal, centred (Howell, C-11 four times)."""
-    a, b = width / 2 / height, depth / 2 / height
-    first = a / np.hypot(1, a) * np.arctan(b / np.hypot(1, a))
-    return float(4 * (first + b / np.hypot(1, b) * np.arctan(a / np.hypot(1, b))) / (2 * np.pi))
+def ball(material: Material, *, smooth: bool = False) -> Instance:
+    mesh = trimesh.creation.icosphere(4 if smooth else 3)
+    return Instance(mesh.triangles, material, mesh.vertex_normals[mesh.faces] if smooth else None)
 
 
-def mean_and_error(scene: Scene, bounces: int) -> tuple[np.ndarray, np.ndarray]:
-    """Mean radiance from the floor at the origin, and its standard error."""
-    color = render_reference(scene, AT_ORIGIN, (160, 160), spp=1, bounces=bounces).reshape(-1, 3)
-    return color.mean(0), color.std(0) / np.sqrt(len(color))
+def corner(quad: Quad, material: Material) -> list[Instance]:
+    """A floor and two walls, open to where the camera is."""
+    return [
+        quad((-1, 0, 1), (2, 0, 0), (0, 0, -2), material),
+        quad((-1, 0, -1), (2, 0, 0), (0, 1, 0), material),
+        quad((-1, 0, 1), (0, 0, -2), (0, 1, 0), material),
+    ]
 
 
-def test_a_plane_under_a_constant_sky_reflects_its_albedo(floor: Callable[[Material], Instance]) -> None:
-    frame = render_frame(Scene([floor(Material(ALBEDO))], sky=SKY), AT_ORIGIN, None, (9, 9), bounces=0)
-    expected = np.broadcast_to(np.multiply(ALBEDO, SKY), (9, 9, 3))
-    np.testing.assert_allclose(frame.direct, expected, rtol=1e-6)
+def box(material: Material) -> Instance:
+    """A closed box around the origin, fronts inwards."""
+    return Instance(trimesh.creation.box((4, 2, 3)).triangles[:, ::-1], material)
+
+
+def test_a_plane_under_a_constant_sky_reflects_its_albedo(floor: Floor) -> None:
+    frame = still(Scene([floor(MATT)], sky=SKY), AT_ORIGIN, (9, 9), bounces=0)
+    np.testing.assert_allclose(frame.direct, np.broadcast_to(np.multiply(ALBEDO, SKY), (9, 9, 3)), rtol=1e-6)
     np.testing.assert_array_equal(frame.indirect, 0)
 
 
 @pytest.mark.parametrize("bounces", [0, 1, 3])
 def test_a_convex_body_reflects_only_the_sky(bounces: int) -> None:
-    ball = trimesh.creation.icosphere(3)
-    scene = Scene([Instance(ball.triangles, Material(ALBEDO))], sky=SKY)
-    frame = render_frame(scene, Camera((0, 0, 5), (0, 0, 0), fov_y=15.0), None, (32, 32), bounces=bounces)
+    frame = still(Scene([ball(MATT)], sky=SKY), AT_BALL, (32, 32), bounces=bounces)
     assert (frame.id == 1).all()
     np.testing.assert_allclose(frame.color, np.broadcast_to(np.multiply(ALBEDO, SKY), (32, 32, 3)), rtol=1e-5)
 
 
-def test_a_white_furnace_is_as_bright_as_its_sky(quad: Callable[..., Instance]) -> None:
-    white = Material((1.0, 1.0, 1.0))
-    walls = [
-        quad((-1, 0, 1), (2, 0, 0), (0, 0, -2), white),
-        quad((-1, 0, -1), (2, 0, 0), (0, 1, 0), white),
-        quad((-1, 0, 1), (0, 0, -2), (0, 1, 0), white),
-    ]
-    scene = Scene(walls, sky=(1.0, 1.0, 1.0))
-    camera = Camera((3, 3, 3), (0, 0.3, 0), fov_y=30.0)
-    color = render_frame(scene, camera, None, (40, 40), bounces=64).color
-    # Every path ends in the sky and brings back exactly 1.
+@pytest.mark.parametrize("material", WHITES)
+def test_a_white_body_cannot_be_seen_before_a_white_sky(material: str) -> None:
+    frame = still(Scene([ball(WHITES[material])], sky=WHITE), AT_BALL, bounces=0)
+    assert_mean(frame.color, 1.0, precision=0.003)
+
+
+@pytest.mark.parametrize("material", WHITES)
+def test_a_white_corner_cannot_be_seen_before_a_white_sky(quad: Quad, material: str) -> None:
+    scene = Scene(corner(quad, WHITES[material]), sky=WHITE)
+    frame = still(scene, Camera((3, 3, 3), (0, 0.3, 0), fov_y=30.0), (100, 100), bounces=64)
+    assert frame.color.mean() == pytest.approx(1.0, abs=0.01)
+
+
+def test_smooth_glass_cannot_be_seen_before_a_white_sky() -> None:
+    glass = Material(WHITE, transmissive=True, ior=1.5)
+    for smooth in (False, True):
+        color = still(Scene([ball(glass, smooth=smooth)], sky=WHITE), AT_BALL, (100, 100), bounces=64).color
+        assert color.mean() == pytest.approx(1.0, abs=0.01)
+
+
+def test_every_path_in_a_white_corner_brings_back_the_sky(quad: Quad) -> None:
+    scene = Scene(corner(quad, Material(WHITE)), sky=WHITE)
+    color = still(scene, Camera((3, 3, 3), (0, 0.3, 0), fov_y=30.0), (40, 40), bounces=64).color
     np.testing.assert_allclose(color, 1.0, rtol=1e-4)
 
 
-def test_a_rectangular_lamp_matches_its_form_factor(
-    floor: Callable[[Material], Instance], quad: Callable[..., Instance]
-) -> None:
-    lamp = quad((-1, 1.5, -0.4), (2, 0, 0), (0, 0, 0.8), Material((0, 0, 0), emission=(10.0, 5.0, 1.0)))
-    mean, error = mean_and_error(Scene([floor(Material(ALBEDO)), lamp]), bounces=0)
+@pytest.mark.parametrize("bounces", [0, 2])
+def test_walls_that_shine_in_a_closed_box_make_a_geometric_series(bounces: int) -> None:
+    scene = Scene([box(Material(ALBEDO, emission=SKY))])
+    frame = still(scene, Camera((0, 0, 1), (0.3, 0.2, 0), fov_y=90.0), bounces=bounces)
+    albedo = np.array(ALBEDO)
+    np.testing.assert_array_equal(frame.emission, np.broadcast_to(np.float32(SKY), (200, 200, 3)))
+    assert_mean(frame.direct, albedo * SKY)
+    assert_mean(frame.indirect, sum(albedo ** (n + 2) for n in range(bounces)) * np.array(SKY))
+
+
+@pytest.mark.parametrize("material", [name for name in WHITES if name != "matt"])
+def test_shining_walls_that_are_white_reflect_all_of_it(material: str) -> None:
+    """Lamps all around glossy surfaces, found both ways: sampled, and by reflected rays."""
+    white = WHITES[material]
+    lamps = Material(white.base_colour, SKY, metallic=white.metallic, roughness=white.roughness, ior=white.ior)
+    frame = still(Scene([box(lamps)]), Camera((0, 0, 1), (0.3, 0.2, 0), fov_y=90.0), bounces=1)
+    assert_mean(frame.direct, SKY)
+    assert_mean(frame.indirect, SKY)
+
+
+def test_a_rectangular_lamp_matches_its_form_factor(floor: Floor, quad: Quad) -> None:
+    lamp = quad((-1, 1.5, -0.4), (2, 0, 0), (0, 0, 0.8), Material(BLACK, emission=(10.0, 5.0, 1.0)))
     expected = np.multiply(ALBEDO, (10.0, 5.0, 1.0)) * under_rectangle(2, 0.8, 1.5)
-    assert (np.abs(mean - expected) < 4 * error).all()
-    assert (error < 0.01 * expected).all()
+    assert_mean(still(Scene([floor(MATT), lamp]), AT_ORIGIN, bounces=0).color, expected, precision=0.01)
 
 
-def test_lamps_and_sky_add_up(floor: Callable[[Material], Instance], quad: Callable[..., Instance]) -> None:
-    ground = floor(Material(ALBEDO))
-    bright = quad((-0.5, 1, -0.5), (1, 0, 0), (0, 0, 1), Material((0, 0, 0), emission=(3.0, 3.0, 3.0)))
-    # A black sheet of the lamp's place and size: what it hides from the sky, it does not add.
+def test_lamps_and_sky_add_up(floor: Floor, quad: Quad) -> None:
+    lamp = quad((-0.5, 1, -0.5), (1, 0, 0), (0, 0, 1), Material(BLACK, emission=(3.0, 3.0, 3.0)))
+    # The lamp hides from the floor what is behind it.
     share = under_rectangle(1, 1, 1)
-    mean, error = mean_and_error(Scene([ground, bright], sky=SKY), bounces=0)
     expected = np.multiply(ALBEDO, np.array(SKY) * (1 - share) + 3.0 * share)
-    assert (np.abs(mean - expected) < 4 * error).all()
+    assert_mean(still(Scene([floor(MATT), lamp], sky=SKY), AT_ORIGIN, bounces=0).color, expected)
 
 
-def test_a_lamp_is_dark_from_behind(floor: Callable[[Material], Instance], quad: Callable[..., Instance]) -> None:
-    upward = quad((-1, 1, 1), (2, 0, 0), (0, 0, -2), Material((0, 0, 0), emission=(5.0, 5.0, 5.0)))
-    scene = Scene([floor(Material(ALBEDO)), upward])
-    mean, _ = mean_and_error(scene, bounces=0)
-    np.testing.assert_array_equal(mean, 0)
-    below = render_frame(scene, Camera((0, 0.5, 0), (0, 1, 0.1)), None, (4, 4))
-    above = render_frame(scene, Camera((0, 1.5, 0), (0, 1, 0.1), fov_y=20.0), None, (4, 4))
-    np.testing.assert_array_equal(below.emission, 0)
-    np.testing.assert_array_equal(above.emission, 5)
+def test_a_lamp_is_dark_from_behind(floor: Floor, quad: Quad) -> None:
+    upward = quad((-1, 1, 1), (2, 0, 0), (0, 0, -2), Material(BLACK, emission=(5.0, 5.0, 5.0)))
+    scene = Scene([floor(MATT), upward])
+    np.testing.assert_array_equal(still(scene, AT_ORIGIN, bounces=0).color, 0)
+    np.testing.assert_array_equal(still(scene, Camera((0, 0.5, 0), (0, 1, 0.1)), (4, 4)).emission, 0)
+    np.testing.assert_array_equal(still(scene, Camera((0, 1.5, 0), (0, 1, 0.1), fov_y=20.0), (4, 4)).emission, 5)
+
+
+@pytest.mark.parametrize("radius", [0.0, 0.25, 10.0])
+def test_a_ball_under_a_sun_follows_lambert(radius: float) -> None:
+    sun = Sun((1.0, 1.0, 1.0), (3.0, 2.0, 1.0), radius)
+    frame = still(Scene([ball(MATT)], lights=[sun]), AT_BALL, bounces=0)
+    cosine = frame.normal @ np.float32([1 / math.sqrt(3)] * 3)
+    whole = cosine > math.sin(math.radians(radius)) + 0.01  # all of the disc is above the horizon
+    reflected = frame.direct[whole] / cosine[whole][:, None]
+    assert_mean(reflected, np.multiply(ALBEDO, (3.0, 2.0, 1.0)) / math.pi)
+    if radius == 0.0:
+        np.testing.assert_allclose(reflected.std(0), 0.0, atol=1e-4)
+    np.testing.assert_array_equal(frame.direct[cosine < -math.sin(math.radians(radius)) - 0.01], 0)
+
+
+def test_point_and_spot_lights_follow_the_inverse_square(floor: Floor) -> None:
+    point = PointLight((1.0, 2.0, 2.0), (9.0, 18.0, 27.0))
+    frame = still(Scene([floor(MATT)], lights=[point]), AT_ORIGIN, (8, 8), bounces=0)
+    expected = np.multiply(ALBEDO, (1.0, 2.0, 3.0)) * 2 / 3 / math.pi
+    np.testing.assert_allclose(frame.color, np.broadcast_to(expected, (8, 8, 3)), rtol=1e-3)
+    spot = PointLight((0.0, 2.0, 0.0), (4.0, 4.0, 4.0), (0.0, -1.0, 1.0), 30.0, 60.0)
+    frame = still(Scene([floor(MATT)], lights=[spot]), AT_ORIGIN, (8, 8), bounces=0)
+    fade = (math.cos(math.radians(45)) - 0.5) / (math.cos(math.radians(30)) - 0.5)
+    expected = np.multiply(ALBEDO, fade**2 / math.pi)
+    np.testing.assert_allclose(frame.color, np.broadcast_to(expected, (8, 8, 3)), rtol=1e-3)
+
+
+def test_lights_without_extent_cast_hard_shadows(floor: Floor, quad: Quad) -> None:
+    light = PointLight((0.0, 2.0, 0.0), (4.0, 4.0, 4.0))
+    shade = quad((-0.5, 1, -0.5), (1, 0, 0), (0, 0, 1), Material(BLACK))
+    frame = still(
+        Scene([floor(MATT), shade], lights=[light]), Camera((0, 0.9, 0), (0, 0, 1e-3), fov_y=110.0), bounces=0
+    )
+    # Where each pixel's ray meets the floor: the shadow is twice the size of what casts it.
+    y, x = (np.mgrid[:200, :200] - 99.5) / 100 * 0.9 * math.tan(math.radians(55))
+    size = np.maximum(np.abs(x), np.abs(y))
+    assert (frame.color[size < 0.97] == 0).all()
+    assert (frame.color[size > 1.03] > 0).all()
+
+
+def test_a_band_of_the_sky_has_its_closed_form(floor: Floor) -> None:
+    rows = np.zeros((720, 4, 3), np.float32)
+    rows[80:240] = SKY  # 20 to 60 degrees from the zenith
+    expected = np.multiply(ALBEDO, SKY) * (math.sin(math.radians(60)) ** 2 - math.sin(math.radians(20)) ** 2)
+    frame = still(Scene([floor(MATT)], sky=Environment(rows)), AT_ORIGIN, bounces=0)
+    assert_mean(frame.color, expected, precision=0.01)
+
+
+@pytest.mark.parametrize("material", [MATT, Material(WHITE, metallic=1.0, roughness=0.5)])
+def test_sky_and_suns_that_overlap_add_up(floor: Floor, material: Material) -> None:
+    def color(*lights: Sun, sky: float = 0.0) -> np.ndarray:
+        image = Environment(np.full((8, 16, 3), sky, np.float32)) if sky else None
+        return still(Scene([floor(material)], lights=lights, sky=image), AT_ORIGIN, bounces=0).color
+
+    # Discs as bright as the sky behind them.
+    suns = [Sun((0.0, 1.0, tilt), WHITE, 30.0) for tilt in (0.0, -0.2)]
+    together = color(*suns, sky=1.0)
+    alone = [color(suns[0]), color(suns[1]), color(sky=1.0)]
+    assert_mean(together, sum(part.mean((0, 1)) for part in alone), precision=0.003)
 
 
 def test_bounces_only_add_light() -> None:
     camera = Camera((0, 1.0, 6.8), (0, 1.0, 5.8), fov_y=19.5)
-    scene = corner()
-    means = [render_reference(scene, camera, (48, 48), spp=4, bounces=bounces).mean() for bounces in (0, 1, 2)]
+    means = [still(room(), camera, (48, 48), spp=4, bounces=bounces).color.mean() for bounces in (0, 1, 2)]
     assert means[0] < means[1] < means[2]
 
 
-def corner() -> Scene:
-    room = trimesh.creation.box((2, 2, 2))
+def room() -> Scene:
+    walls = trimesh.creation.box((2, 2, 2))
     lamp = trimesh.creation.box((0.5, 0.1, 0.5))
     return Scene(
         [
-            Instance(room.triangles[room.triangles_center[:, 2] < 0.9] + np.array((0, 1, 0)), Material()),
+            Instance(walls.triangles[walls.triangles_center[:, 2] < 0.9] + np.array((0, 1, 0)), Material()),
             Instance(lamp.triangles + np.array((0, 1.8, 0)), Material(emission=(9.0, 9.0, 9.0))),
         ]
     )
 
 
+def test_paths_end_after_too_much_glass(floor: Floor) -> None:
+    """They end dark, whatever else there is."""
+    panes = [
+        trimesh.creation.box((9, 0.1, 9), trimesh.transformations.translation_matrix((0, y, 0))) for y in range(20)
+    ]
+    glass = Instance(np.concatenate([pane.triangles for pane in panes]), Material(WHITE, transmissive=True))
+    scene = Scene([floor(Material(WHITE)), glass], lights=[Sun((0, 1, 0), WHITE)])
+    frame = still(scene, Camera((0, 25, 0), (0, 0, 0.1), fov_y=10.0), (16, 16))
+    np.testing.assert_array_equal(frame.color, 0)
+
+
 @pytest.mark.skipif(not CORNELL.is_dir(), reason=f"{CORNELL} is not there")
 def test_the_cornell_box_matches_another_renderer() -> None:
     expected = np.load(CORNELL / "reference_tungsten_256.npy").astype(np.float32)
-    scene = load_scene(CORNELL / "cornell_box.glb")
     camera = Camera((0, 1.0, 6.8), (0, 1.0, 5.8), fov_y=19.5)
-    color = render_reference(scene, camera, (64, 64), spp=128, bounces=16)
+    shot = Shot(load_scene(CORNELL / "cornell_box.glb"), (64, 64), camera_path=CameraPath.static(camera))
+    color = render_reference(shot, 0, spp=128, bounces=16)
     np.testing.assert_allclose(color.mean((0, 1)), expected.mean((0, 1)), rtol=0.01)
     blocks = color.reshape(16, 4, 16, 4, 3).mean((1, 3)) / expected.reshape(16, 16, 16, 16, 3).mean((1, 3))
     assert np.median(blocks) == pytest.approx(1.0, abs=0.01)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tests.tracer.estimates import under_rectangle
 from tracer.compiled import compiled
 from tracer.geometry import Instance, Triangles
-from tracer.light_sampling import Lights, lamp_density, outside_density, outside_radiance, sample_light
+from tracer.light_sampling import Lights, lamp_density, mis_weight, outside_radiance, sample_light
 from tracer.lights import PointLight, Sun
 from tracer.materials import Material, Materials
 from tracer.motion import Motion, Track
@@ -190,25 +190,27 @@ def test_all_kinds_of_light_add_up(ground: Instance, ceiling: Quad) -> None:
     assert_irradiance(found, np.add((2.0, 2.0, 6.0), math.pi * (1 + under_rectangle(2, 0.8, 1.5))))
 
 
-def test_what_is_told_of_a_direction_is_what_it_was_drawn_with(ground: Instance, ceiling: Quad) -> None:
-    """Densities of lamps, and of what lies outside, as paths ask for them that have found a light by themselves."""
+@pytest.mark.parametrize("density", [0.0, 0.1, 10.0])
+def test_paths_that_find_a_light_weigh_it_by_what_it_is_sampled_with(
+    ground: Instance, ceiling: Quad, density: float
+) -> None:
     sky = Environment(np.random.default_rng(3).random((8, 16, 3)).astype(np.float32))
-    for found in (
-        tables([ground], sky=sky),
-        tables([ground], [Sun((1, 2, 3), (1, 1, 1), 5.0), Sun((-1, 2, 3), (2, 1, 1), 2.0)]),
-    ):
-        direction, _, light, density = samples(found)
+    suns = [Sun((1, 2, 3), (1, 1, 1), 5.0), Sun((-1, 2, 3), (2, 1, 1), 2.0)]
+    for found in (tables([ground], sky=sky), tables([ground], suns)):
+        direction, _, light, sampled = samples(found)
         for n in range(0, COUNT, 500):
-            wi = tuple(direction[n].tolist())
-            assert outside_density(found.lights, found.sky, wi) == pytest.approx(density[n], rel=1e-6)
-            np.testing.assert_allclose(
-                light[n] * density[n], outside_radiance(found.lights, found.sky, wi), rtol=1e-5, atol=1e-9
-            )
-    found = tables([ceiling(lamp(1, 1, 1)), ground], [Sun((1, 2, 3), (1, 1, 1))])
-    direction, distance, _, density = samples(found)
+            seen = outside_radiance(found.lights, found.sky, tuple(direction[n].tolist()), density)
+            weight = mis_weight(density, sampled[n])
+            np.testing.assert_allclose(seen, light[n] * sampled[n] * weight, rtol=1e-5, atol=1e-9)
+    found = tables([ceiling(lamp(1, 1, 1)), ground], suns)
+    direction, distance, _, sampled = samples(found)
     for n in np.flatnonzero(np.isfinite(distance))[::500]:
-        told = lamp_density(found.lights, 0, direction[n, 1], distance[n])
-        assert told == pytest.approx(density[n], rel=1e-6)
+        assert lamp_density(found.lights, 0, direction[n, 1], distance[n]) == pytest.approx(sampled[n], rel=1e-6)
+
+
+def test_both_weights_of_an_estimate_add_up_to_1() -> None:
+    assert mis_weight(2.0, 3.0) + mis_weight(3.0, 2.0) == pytest.approx(1.0)
+    assert mis_weight(0.0, 3.0) == mis_weight(3.0, 0.0) == 1.0
 
 
 @pytest.mark.parametrize("radius", [0.02, 0.25, 5.0])
@@ -220,7 +222,7 @@ def test_a_sun_is_as_large_as_it_is_bright(ground: Instance, radius: float) -> N
     offset = random.uniform(-2, 2, (4000, 2)) * math.radians(radius)
     direction = middle + offset @ across
     direction = (direction / np.linalg.norm(direction, axis=1, keepdims=True)).astype(np.float32).astype(np.float64)
-    seen = [outside_density(found.lights, found.sky, tuple(way)) > 0.0 for way in direction.tolist()]
+    seen = [max(outside_radiance(found.lights, found.sky, tuple(way), 0.0)) > 0.0 for way in direction.tolist()]
     inside = np.tan(np.radians(radius)) > np.linalg.norm(offset, axis=1)
     assert np.mean(seen == inside) > 0.995
 
