@@ -20,7 +20,7 @@ from .lights import PointLight, Sun
 from .materials import Material, Materials, emitted_radiance, is_solid
 from .sampling import Random4, on_circle
 from .sky import SkyTable, sample_sky, sky_density, sky_radiance
-from .vec3 import Vec3, add, cross, dot, normalise, row, scale, subtract, to_world
+from .vec3 import Vec3, add, dot, normalise, row, scale, subtract, to_world
 from .vectors import LUMINANCE, Float64
 
 LAMPS, SUNS, POINTS, SKY = range(4)
@@ -39,6 +39,7 @@ class Lights(NamedTuple):
 
     kinds: NDArray[np.int64]
     lamps: NDArray[np.int64]
+    lamp_normals: Float64
     lamp_chances: Float64
     lamp_density: Float64
     sun_direction: Float64
@@ -69,14 +70,17 @@ class Lights(NamedTuple):
         brightness = np.array([LUMINANCE @ material.emission_at(time) for material in materials])
         shining = np.flatnonzero(brightness[triangles.material] > 0.0)
         edges = triangles.corners[shining, 1:].astype(np.float64)
-        power = brightness[triangles.material[shining]] * np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1) / 2
-        lamps, power = shining[power > 0.0], power[power > 0.0]
+        normals = np.cross(edges[:, 0], edges[:, 1])
+        areas = np.linalg.norm(normals, axis=1) / 2.0
+        lamps, normals, areas = shining[areas > 0.0], normals[areas > 0.0], areas[areas > 0.0]
+        power = brightness[triangles.material[lamps]] * areas
         radius = np.radians([sun.angular_radius for sun in suns])
         placed = [light.placed(time) for light in points]
         present = [len(lamps), len(suns), len(points), sky.rows.size]
         return cls(
             np.flatnonzero(present).astype(np.int64),
             lamps.astype(np.int64),
+            normals / (2.0 * areas[:, None]),
             _cumulative(power),
             brightness / (power.sum() or 1.0),
             _rows([np.divide(s.direction_to_light, np.linalg.norm(s.direction_to_light)) for s in suns]),
@@ -155,20 +159,18 @@ def outside_radiance(lights: Lights, sky: SkyTable, direction: Vec3, density: fl
 def mis_weight(density: float, other: float) -> float:
     """The weight of an estimate drawn with `density` where another could have been drawn with density `other`.
 
-    A density of 0 stands for what no other could have found. Source: the power heuristic of Veach, Robust Monte Carlo
-    Methods for Light Transport Simulation, 1997, 9.2.4.
+    A density of 0 stands for that of a single direction, infinite. Source: the power heuristic of Veach, Robust Monte
+    Carlo Methods for Light Transport Simulation, 1997, 9.2.4.
     """
-    if density == 0.0:
-        return 1.0
-    ratio = other / density
-    return 1.0 / (1.0 + ratio * ratio)
+    return density * density / (density * density + other * other) if density > 0.0 else 1.0
 
 
 @compiled
 def _sample_lamp(
     lights: Lights, triangles: Triangles, materials: Materials, point: Vec3, u: float, v: float, w: float
 ) -> LightSample:
-    triangle = lights.lamps[_pick(lights.lamp_chances, u)]
+    number = _pick(lights.lamp_chances, u)
+    triangle = lights.lamps[number]
     material = triangles.material[triangle]
     root = math.sqrt(v)
     b, c = 1.0 - root, w * root
@@ -176,9 +178,7 @@ def _sample_lamp(
     distance = math.sqrt(dot(way, way))
     direction = normalise(way)
     zero = (0.0, 0.0, 0.0)
-    edge1 = row(triangles.corners[triangle], 1)
-    edge2 = row(triangles.corners[triangle], 2)
-    cosine = -dot(normalise(cross(edge1, edge2)), direction)
+    cosine = -dot(row(lights.lamp_normals, number), direction)
     if materials.two_sided[material]:
         cosine = abs(cosine)
     s, t = texture_coordinates(triangles, triangle, b, c)

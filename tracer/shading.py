@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -65,6 +67,19 @@ def pick_moments(draws: Draws, count: int, moments: NDArray[np.int64]) -> None:
     """Pick one of `count` moments for each path: `moments` (N,)."""
     for index in range(len(moments)):
         moments[index] = int(random4(draws.key, draws.pixels[index], draws.sample, PIXEL_DRAW)[2] * count)
+
+
+class Vertex(NamedTuple):
+    """A surface that scatters a path: how, where the path has come from, and what it carries.
+
+    `specular_share` is the chance of the specular lobe to be sampled.
+    """
+
+    surface: Surface
+    reflection: Reflection
+    specular_share: float
+    outgoing: Vec3
+    throughput: Vec3
 
 
 @compiled
@@ -149,67 +164,40 @@ def shade(
                 cosine = abs(dot(surface.face_normal, direction))
                 weight = mis_weight(density, lamp_density(tables.lights, material, cosine, hits.distance[index]))
                 _add(light, pixel, kind, multiply(throughput, scale(shine, weight)))
-        if len(features.depth):
-            if depth == 0:
-                describe(tables, lens, before, surface, triangle, b, c, direction, pixel, features)
-            elif depth == 1:
-                features.hit_distance[pixel, lobe] = hits.distance[index]
+        if depth == 1 and len(features.depth):
+            features.hit_distance[pixel, lobe] = hits.distance[index]
         glass = tables.materials.transmissive[material]
         if paths.scatterings[index] == 0 and not glass:
             continue
+        base = base_colour(tables.materials, material, surface.u, surface.v)
+        outgoing = scale(direction, -1.0)
+        r = reflection(
+            base,
+            tables.materials.metallic[material],
+            tables.materials.roughness[material],
+            tables.materials.ior[material],
+        )
+        if depth == 0 and len(features.depth):
+            describe(tables, lens, before, surface, r, triangle, b, c, outgoing, pixel, features)
         draw = FIRST_SURFACE_DRAW + 2 * depth
         u = random4(draws.key, draws.pixels[pixel], draws.sample, draw)
         if glass:
-            ahead_count = _pass_glass(
-                tables, surface, direction, throughput, u, paths, index, depth, ahead, ahead_count
-            )
+            vertex = Vertex(surface, r, 1.0, outgoing, throughput)
+            ahead_count = _pass_glass(tables, vertex, base, u, paths, index, depth, ahead, ahead_count)
             continue
-        to_light = random4(draws.key, draws.pixels[pixel], draws.sample, draw + 1)
-        base = base_colour(tables.materials, material, surface.u, surface.v)
-        metallic, roughness = tables.materials.metallic[material], tables.materials.roughness[material]
-        surface_reflection = reflection(base, metallic, roughness, tables.materials.ior[material])
-        cos_o = min(-dot(surface.normal, direction), 1.0)
-        share = specular_share(surface_reflection, cos_o)
+        share = specular_share(r, min(dot(surface.normal, outgoing), 1.0))
+        vertex = Vertex(surface, r, share, outgoing, throughput)
         if len(tables.lights.kinds):
-            shadow_count = _aim(
-                tables,
-                surface,
-                surface_reflection,
-                share,
-                direction,
-                throughput,
-                to_light,
-                depth,
-                lobe,
-                pixel,
-                shadows,
-                shadow_count,
-            )
-        ahead_count = _scatter(
-            surface,
-            surface_reflection,
-            share,
-            direction,
-            throughput,
-            u,
-            tables.lift,
-            paths,
-            index,
-            depth,
-            ahead,
-            ahead_count,
-        )
+            to_light = random4(draws.key, draws.pixels[pixel], draws.sample, draw + 1)
+            shadow_count = _aim(tables, vertex, to_light, depth, lobe, pixel, shadows, shadow_count)
+        ahead_count = _scatter(vertex, u, tables.lift, paths, index, depth, ahead, ahead_count)
     return shadow_count, ahead_count
 
 
 @compiled
 def _aim(
     tables: Tables,
-    surface: Surface,
-    r: Reflection,
-    share: float,
-    direction: Vec3,
-    throughput: Vec3,
+    vertex: Vertex,
     u: Random4,
     depth: int,
     lobe: int,
@@ -218,22 +206,21 @@ def _aim(
     count: int,
 ) -> int:
     """Send a ray from the surface to a light, unless that cannot shine on it; returns the new count of such rays."""
+    surface, r, share, outgoing, throughput = vertex
     origin = add(surface.point, scale(surface.face_normal, tables.lift))
     sample = sample_light(tables.lights, tables.triangles, tables.materials, tables.sky, origin, u)
-    if (
-        dot(sample.direction, surface.face_normal) <= 0.0
-        or max(sample.light[0], sample.light[1], sample.light[2]) <= 0.0
-    ):
-        return count
-    wo, wi = to_local(scale(direction, -1.0), surface.normal), to_local(sample.direction, surface.normal)
-    if wi[2] <= 0.0:
+    cosine = dot(sample.direction, surface.normal)
+    shines = max(sample.light[0], sample.light[1], sample.light[2]) > 0.0
+    if not shines or cosine <= 0.0 or dot(sample.direction, surface.face_normal) <= 0.0:
         return count
     light = multiply(throughput, sample.light)
-    diffuse, specular = evaluate_diffuse(r, wo, wi), BLACK
+    diffuse, specular = BLACK, BLACK
     if share < 1.0:
-        weight = mis_weight(sample.density, (1.0 - share) * diffuse_density(wi))
-        diffuse = scale(diffuse, weight)
+        cos_o = dot(outgoing, surface.normal)
+        weight = mis_weight(sample.density, (1.0 - share) * diffuse_density(cosine))
+        diffuse = scale(evaluate_diffuse(r, cos_o, cosine), weight)
     if share > 0.0:
+        wo, wi = to_local(outgoing, surface.normal), to_local(sample.direction, surface.normal)
         weight = mis_weight(sample.density, share * specular_density(r, wo, wi))
         specular = scale(evaluate_specular(r, wo, wi), weight)
     if depth > 0:
@@ -252,29 +239,19 @@ def _aim(
 
 @compiled
 def _scatter(
-    surface: Surface,
-    r: Reflection,
-    share: float,
-    direction: Vec3,
-    throughput: Vec3,
-    u: Random4,
-    lift: float,
-    paths: Paths,
-    index: int,
-    depth: int,
-    ahead: Paths,
-    count: int,
+    vertex: Vertex, u: Random4, lift: float, paths: Paths, index: int, depth: int, ahead: Paths, count: int
 ) -> int:
     """Draw a direction from one lobe and go on along it, unless it brings nothing; returns the new count of paths."""
-    wo = to_local(scale(direction, -1.0), surface.normal)
+    surface, r, share, outgoing, throughput = vertex
     if u[0] < share:
+        wo = to_local(outgoing, surface.normal)
         lobe, wi = SPECULAR, sample_specular(r, wo, u[1], u[2])
         density = share * specular_density(r, wo, wi)
         reflected = evaluate_specular(r, wo, wi)
     else:
         lobe, wi = DIFFUSE, sample_diffuse(u[1], u[2])
-        density = (1.0 - share) * diffuse_density(wi)
-        reflected = evaluate_diffuse(r, wo, wi)
+        density = (1.0 - share) * diffuse_density(wi[2])
+        reflected = evaluate_diffuse(r, dot(outgoing, surface.normal), wi[2])
     onward = to_world(wi, surface.normal)
     # The shading normal can send a direction below the true surface, where no light comes from.
     if density <= 0.0 or dot(onward, surface.face_normal) <= 0.0:
@@ -292,9 +269,8 @@ def _scatter(
 @compiled
 def _pass_glass(
     tables: Tables,
-    surface: Surface,
-    direction: Vec3,
-    throughput: Vec3,
+    vertex: Vertex,
+    colour: Vec3,
     u: Random4,
     paths: Paths,
     index: int,
@@ -302,15 +278,16 @@ def _pass_glass(
     ahead: Paths,
     count: int,
 ) -> int:
-    """Reflect or refract a path at smooth glass; returns the new count of paths."""
+    """Reflect or refract a path at smooth glass of some `colour`; returns the new count of paths."""
+    surface, _, _, outgoing, throughput = vertex
     ior = tables.materials.ior[surface.material]
     eta = ior if surface.front else 1.0 / ior
-    wo = to_local(scale(direction, -1.0), surface.normal)
+    wo = to_local(outgoing, surface.normal)
     wi, lift = (-wo[0], -wo[1], wo[2]), tables.lift
     if u[0] >= fresnel_dielectric(wo[2], eta):
         wi, lift = refract(wo, eta)[0], -tables.lift
         if surface.front:  # the colour counts once for the way in and out
-            throughput = multiply(throughput, base_colour(tables.materials, surface.material, surface.u, surface.v))
+            throughput = multiply(throughput, colour)
     onward = to_world(wi, surface.normal)
     if dot(onward, surface.face_normal) * lift <= 0.0:
         return count

@@ -46,7 +46,7 @@ def gather(r: Reflection, wo: Vec3, direction: Floats, light: Floats, lobes: Flo
     """Add up what comes in along directions (N, 3), as radiance times solid angle (N, 3), reflected: (2, 3)."""
     for n in range(len(direction)):
         wi = to_local((direction[n, 0], direction[n, 1], direction[n, 2]), (0.0, 1.0, 0.0))
-        diffuse, specular = evaluate_diffuse(r, wo, wi), evaluate_specular(r, wo, wi)
+        diffuse, specular = evaluate_diffuse(r, wo[2], wi[2]), evaluate_specular(r, wo, wi)
         for channel in range(3):
             lobes[0, channel] += diffuse[channel] * light[n, channel]
             lobes[1, channel] += specular[channel] * light[n, channel]
