@@ -42,3 +42,8 @@ def compiled(function: Function) -> Function:
     finally:
         vars(numba.config)["CACHE_DIR"] = others
     return result
+
+
+def was_compiled() -> bool:
+    """Whether a process before this one has compiled anything: if not, the first picture takes some twenty seconds."""
+    return any(FOLDER.rglob("*.nbi"))

@@ -25,6 +25,10 @@ def require_tracer() -> None:
         ) from error
     finally:
         signal.signal(signal.SIGINT, interrupt)
+    from tracer.compiled import was_compiled
+
+    if not was_compiled():
+        print("compiling the tracer: some twenty seconds, this once", flush=True)
 
 
 def read_sky(text: str) -> tuple[float, float, float] | Environment:
