@@ -108,6 +108,11 @@ def write_frame(path: Path, frame: Frame) -> None:
     SequenceError
         Where an id is greater than 2**24, or the file cannot be written.
     """
+    write_channels(path, channels_of(path, frame))
+
+
+def channels_of(path: Path, frame: Frame) -> dict[str, Plane]:
+    """Take a frame of numpy arrays apart into the channels of file `path`; errors as of `write_frame`."""
     frame.check(frame.shape)
     planes: dict[str, Plane] = {}
     for field, value in frame.present().items():
@@ -115,7 +120,7 @@ def write_frame(path: Path, frame: Frame) -> None:
             raise SequenceError(f"{path}: expected ids up to {MAX_ID} (whole numbers in float32), got {value.max()}")
         components = np.asarray(value, np.float32).reshape(*frame.shape, -1)
         planes |= zip(CHANNEL_NAMES[field], np.moveaxis(components, -1, 0), strict=False)
-    write_channels(path, planes)
+    return planes
 
 
 def read_frame(path: Path) -> Frame:
@@ -214,13 +219,14 @@ def absent(path: Path, names: Sequence[str], planes: Mapping[str, Plane]) -> Seq
     return SequenceError(f"{path}: expected channels {' '.join(names)}, found {' '.join(planes)}")
 
 
-def write_channels(path: Path, planes: Mapping[str, Plane]) -> None:
-    """Write (H, W) float32 planes as the channels of one EXR file, whole or not at all."""
+def write_channels(path: Path, planes: Mapping[str, Plane], attributes: Mapping[str, int | float | str] = {}) -> None:
+    """Write (H, W) float32 planes as the channels of one EXR file with such attributes, whole or not at all."""
     pixels = np.ascontiguousarray(np.stack(list(planes.values()), axis=-1))
     height, width, count = pixels.shape
     spec = oiio.ImageSpec(width, height, count, "float")
     spec.channelnames = tuple(planes)
-    spec.attribute("compression", "zip")
+    for name, value in {**attributes, "compression": "zip"}.items():
+        spec.attribute(name, value)
     with written_whole(path) as aside:
         image = oiio.ImageBuf(spec)
         if not (image.set_pixels(spec.roi, pixels) and image.write(str(aside), fileformat="openexr")):

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pyopencl as cl
 import pytest
 
-from svgf_cl import devices, tuning
+from svgf_cl import cache, devices, tuning
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -16,6 +16,15 @@ def untuned(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     folder = tmp_path_factory.mktemp("untuned")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(tuning, "cache_folder", lambda: folder)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def no_references(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """No reference that an earlier run has kept on this machine, and none left there."""
+    folder = tmp_path_factory.mktemp("references")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cache, "cache_folder", lambda: folder)
         yield
 
 

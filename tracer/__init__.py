@@ -5,8 +5,10 @@ from .camera import Camera, CameraPath
 from .errors import SceneError
 from .loading import load_scene
 from .panorama import load_environment
+from .references import Goal, References
 from .render import render_frame, render_reference, render_sequence
 from .scene import Scene
+from .scheduling import scheduled
 from .shot import Shot
 from .sky import Environment
 
@@ -15,6 +17,8 @@ __all__ = [
     "Camera",
     "CameraPath",
     "Environment",
+    "Goal",
+    "References",
     "Scene",
     "SceneError",
     "Shot",
@@ -24,4 +28,5 @@ __all__ = [
     "render_frame",
     "render_reference",
     "render_sequence",
+    "scheduled",
 ]

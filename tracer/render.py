@@ -99,7 +99,7 @@ def render_frame(
             light += sampler.trace(pixels, sample)
         sum_up(light, spp, radiance.part(pixels))
 
-    for _ in _in_threads(finish, tiles(count)):
+    for _ in in_threads(finish, tiles(count)):
         pass
     fields = features._asdict() | radiance._asdict()
     return Frame(**{name: values.reshape(*shot.shape, *values.shape[1:]) for name, values in fields.items()})
@@ -215,7 +215,7 @@ def trace_samples(
         sum_up(light, 1, radiance)
         return Tile(sample, pixels, radiance, features)
 
-    yield from _in_threads(job, ((sample, pixels) for sample in samples for pixels in tiles((end - first) * width)))
+    yield from in_threads(job, ((sample, pixels) for sample in samples for pixels in tiles((end - first) * width)))
 
 
 class Sampler:
@@ -276,7 +276,7 @@ def _exposure(shot: Shot, now: float, before: float) -> Exposure:
     )
 
 
-def _in_threads(function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:
+def in_threads(function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:
     """Results in the order of `items`, computed on all cores; few are ever waiting to be fetched."""
     workers = os.cpu_count() or 1
     with ThreadPoolExecutor(workers) as pool:

@@ -9,10 +9,12 @@ from statistics import median
 from typing import TypeVar
 
 from rich.console import Console
-from rich.progress import Progress
+from rich.progress import Progress, TextColumn
 from rich.table import Table
 
 Item = TypeVar("Item")
+
+SLOWEST_STEP = 600.0  # seconds between two steps from which the time left can still be told
 
 WIDE = 160  # columns where the output is no terminal: nothing is gained by breaking words in a file
 
@@ -24,6 +26,27 @@ def progress_bar(title: str, total: int) -> Iterator[Callable[[], None]]:
     with Progress(console=console, disable=not (console.is_terminal and total)) as progress:
         task = progress.add_task(title, total=total)
         yield lambda: progress.advance(task)
+
+
+@contextmanager
+def share_bar(title: str, total: int) -> Iterator[Callable[[float, str], None]]:
+    """Show progress as `progress_bar` does; call what this yields with how much of `total` is done, and a remark.
+
+    What is done at the first call was done before: the time left is judged by what follows.
+    """
+    console = Console(stderr=True)
+    columns = (*Progress.get_default_columns(), TextColumn("{task.fields[remark]}"))
+    hidden = not console.is_terminal
+    with Progress(*columns, console=console, disable=hidden, speed_estimate_period=SLOWEST_STEP) as progress:
+        progress.add_task(title, total=None, remark="")
+        (task,) = progress.tasks
+
+        def report(done: float, remark: str) -> None:
+            if task.total is None:
+                task.total, task.completed = total, done
+            progress.update(task.id, completed=done, remark=remark)
+
+        yield report
 
 
 def tracked(items: Iterable[Item], total: int, title: str) -> Iterator[Item]:

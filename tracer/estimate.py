@@ -1,0 +1,115 @@
+"""Mean and spread of a picture's samples, gathered in parts that can be put together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from .vectors import Float32
+
+# Squared radiance below which errors count as absolute: as in `svgf_cl.metrics.relmse`.
+DARK = 0.01
+
+
+class Step(NamedTuple):
+    """How good an estimate was after so many samples per pixel."""
+
+    spp: int
+    error: float
+
+
+@dataclass(frozen=True, eq=False)
+class Estimate:
+    """What N pixels converge to, as far as `spp` independent samples of each tell.
+
+    Parameters
+    ----------
+    spp : int
+        Samples per pixel, >= 0.
+    light : (N, 5, 3) float32
+        The mean of each kind of light, in the order of `tracer.paths`.
+    squares : (N, 3) float32
+        Sum over the samples of the squared difference between colour and mean colour.
+    history : tuple of Step
+        The estimates that this one has grown out of, one for each part it was put together from; the last is itself.
+    """
+
+    spp: int
+    light: Float32
+    squares: Float32
+    history: tuple[Step, ...] = ()
+
+    @classmethod
+    def nothing(cls, pixels: int) -> Estimate:
+        """No sample of so many pixels."""
+        return cls(0, np.zeros((pixels, 5, 3), np.float32), np.zeros((pixels, 3), np.float32))
+
+    @classmethod
+    def of(cls, samples: Iterable[Float32]) -> Estimate:
+        """What single samples (N, 5, 3), at least one, tell."""
+        remaining = iter(samples)
+        light = next(remaining).copy()
+        squares, spp = np.zeros((len(light), 3), np.float32), 1
+        for sample in remaining:
+            _merge(light, squares, spp, sample, 0.0, 1)
+            spp += 1
+        return cls(spp, light, squares)
+
+    @classmethod
+    def beside(cls, parts: Iterable[Estimate]) -> Estimate:
+        """What estimates of as many samples tell of all their pixels, one part after the other."""
+        parts = list(parts)
+        light, squares = (np.concatenate([getattr(part, name) for part in parts]) for name in ("light", "squares"))
+        return cls(parts[0].spp, light, squares)
+
+    def merged(self, other: Estimate) -> Estimate:
+        """What the samples of both tell."""
+        light, squares = self.light.copy(), self.squares.copy()
+        _merge(light, squares, self.spp, other.light, other.squares, other.spp)
+        both = Estimate(self.spp + other.spp, light, squares)
+        return replace(both, history=(*self.history, Step(both.spp, _relative(both.color, both.standard_error))))
+
+    @property
+    def color(self) -> Float32:
+        """The mean colour (N, 3)."""
+        color: Float32 = self.light.sum(1)
+        return color
+
+    @property
+    def standard_error(self) -> Float32:
+        """Estimated standard deviation (N, 3) of `color`; infinite where there are too few samples to tell."""
+        if self.spp < 2:
+            return np.full_like(self.squares, np.inf)
+        error: Float32 = np.sqrt(self.squares / np.float32(self.spp * (self.spp - 1)))
+        return error
+
+    @property
+    def error(self) -> float:
+        """Estimated relative error of the whole, the last of `history`; infinite where there is none.
+
+        It is the root of the mean over pixels and channels of ``standard_error**2 / (color**2 + DARK)``. Its square is
+        the relMSE to be expected between the estimate and the truth.
+        """
+        return self.history[-1].error if self.history else np.inf
+
+
+def _relative(color: Float32, standard_error: Float32) -> float:
+    squared = np.square(standard_error) / (np.square(color) + np.float32(DARK))
+    return float(np.sqrt(squared.mean(dtype=np.float64)))
+
+
+def _merge(
+    light: Float32, squares: Float32, count: int, other_light: Float32, other_squares: Float32 | float, other_count: int
+) -> None:
+    """Add other samples to the mean `light` and the `squares` of `count` samples, in place.
+
+    The formula is that of Chan, Golub, LeVeque, "Updating Formulae and a Pairwise Algorithm for Computing Sample
+    Variances" (1979): nothing cancels, however far the mean is from zero.
+    """
+    total = count + other_count
+    difference = other_light - light
+    light += difference * np.float32(other_count / total)
+    squares += other_squares + np.square(difference.sum(1)) * np.float32(count * other_count / total)
