@@ -1,25 +1,16 @@
-"""Noisy sequences and what they converge to; the converged pictures are kept, for they cost minutes."""
+"""Noisy sequences and what they converge to."""
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
-
-import numpy as np
 
 import tracer
-from svgf_cl.cache import cache_folder
 from svgf_cl.cli.scenes import open_scene
 from svgf_cl.display import Linear
-from svgf_cl.files import make_folder
 from svgf_cl.frame import Frame, Shape
-from svgf_cl.sequence import read_picture, write_picture
-
-# Samples per pixel rendered at once: the progress bar's step.
-PART = 32
+from tracer.references import chunks
 
 
 @dataclass(frozen=True)
@@ -49,7 +40,7 @@ class Footage:
         Where the judged rows begin and end, in picture heights. In the Cornell box these cross walls, a deep shadow,
         the ball, the ring, both blocks, the lattice and the tiles.
     frames : int, >= 2
-    spp : int, a multiple of 2 * PART
+    spp : int, a multiple of 2 * CHUNK
         Samples per pixel of the truth.
     """
 
@@ -75,49 +66,26 @@ class Footage:
         return first, end
 
     @property
-    def parts_to_render(self) -> int:
+    def chunks(self) -> int:
         """How often `halves` will call `advance`."""
-        missing = [path for number in self.judged for half in (0, 1) if not (path := self._file(number, half)).exists()]
-        return len(missing) * self.spp // (2 * PART)
+        return len(self.judged) * 2 * chunks(self.spp // 2)
 
     def noisy(self) -> Iterator[Frame]:
         """The frames to denoise."""
         return tracer.render_sequence(self._shot, jitter=self.jitter)
 
     def halves(self, advance: Callable[[], None]) -> list[tuple[Linear, Linear]]:
-        """Two independent halves of the truth of each judged frame, rendered unless kept from an earlier run."""
+        """Two independent halves of the truth of each judged frame, as far as an earlier run has not rendered them."""
         return [(self._half(number, 0, advance), self._half(number, 1, advance)) for number in self.judged]
-
-    @property
-    def folder(self) -> Path:
-        """Where the halves are kept: another one for other parameters, another scene or another tracer."""
-        digest = hashlib.sha256(repr(self).encode())
-        sources = [*Path(tracer.__file__).parent.glob("*.py"), *filter(Path.is_file, [Path(self.scene)])]
-        for source in sorted(sources):
-            digest.update(source.read_bytes())
-        return cache_folder() / "references" / digest.hexdigest()[:16]
 
     @cached_property
     def _shot(self) -> tracer.Shot:
         path = tracer.CameraPath.through(self.cameras) if self.cameras else None
         return tracer.Shot(open_scene(self.scene, self.sky), self.shape, self.frames, path)
 
-    def _file(self, number: int, half: int) -> Path:
-        return self.folder / f"frame.{number:04d}.half{half}.exr"
-
     def _half(self, number: int, half: int, advance: Callable[[], None]) -> Linear:
-        path = self._file(number, half)
-        if not path.exists():
-            make_folder(self.folder)
-            seeds = range(half, self.spp // PART, 2)
-            total: Linear = np.zeros(())
-            for seed in seeds:
-                total = total + tracer.render_reference(
-                    self._shot, number, spp=PART, seed=seed, jitter=self.jitter, rows=self.rows
-                )
-                advance()
-            write_picture(path, total / len(seeds))
-        return read_picture(path)
+        references = tracer.References(self._shot, seed=half, jitter=self.jitter, rows=self.rows)
+        return references.picture(references.render(number, self.spp // 2, advance))
 
 
 FOOTAGE = (Footage("area", jitter=True), Footage("centre", jitter=False))

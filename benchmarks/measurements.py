@@ -212,5 +212,5 @@ def measure(
 
 def steps(variants: Sequence[Variant], footages: Sequence[Footage], rounds: int) -> int:
     """How often `measure` will call `advance`."""
-    judging = sum(footage.parts_to_render + footage.frames for footage in footages)
+    judging = sum(footage.chunks + footage.frames for footage in footages)
     return judging + len(variants) * (rounds + 1)

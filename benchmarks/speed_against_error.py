@@ -26,7 +26,7 @@ import typer
 
 from benchmarks.command import run
 from benchmarks.findings import TITLE, Findings
-from benchmarks.footage import FOOTAGE, PART, Footage
+from benchmarks.footage import FOOTAGE, Footage
 from benchmarks.measurements import measure, steps
 from benchmarks.provenance import provenance
 from benchmarks.variants import VARIANTS
@@ -38,6 +38,7 @@ from svgf_cl.files import make_folder
 from svgf_cl.frame import extent
 from svgf_cl.metrics import require_flip
 from tracer import Camera
+from tracer.references import CHUNK
 
 
 def speed_against_error(
@@ -54,7 +55,8 @@ def speed_against_error(
         str | None, typer.Option(metavar="R,G,B", help="Light outside: linear radiance, as 0.4,0.5,0.7.")
     ] = None,
     spp: Annotated[
-        int, typer.Option(metavar="N", min=2 * PART, help=f"Samples per pixel of the truth, a multiple of {2 * PART}.")
+        int,
+        typer.Option(metavar="N", min=2 * CHUNK, help=f"Samples per pixel of the truth, a multiple of {2 * CHUNK}."),
     ] = 512,
 ) -> None:
     """Measure time, error against the oracle and error against path-traced truth of every variant.
@@ -62,8 +64,8 @@ def speed_against_error(
     The truth takes some minutes to render the first time, and is kept in the user's cache folder.
     """
     require_flip()
-    if spp % (2 * PART):
-        raise typer.BadParameter(f"expected a multiple of {2 * PART}, got {spp}", param_hint="--spp")
+    if spp % (2 * CHUNK):
+        raise typer.BadParameter(f"expected a multiple of {2 * CHUNK}, got {spp}", param_hint="--spp")
     shape = parse_size(size)
     place: dict[str, Any] = {"scene": scene, "cameras": tuple(Camera.parse(text) for text in camera)}
     place["sky"] = parse_rgb(sky) if sky else None

@@ -135,7 +135,7 @@ def compared(shape: Shape, settings: Settings, rounds: int, *, clean_aux: bool =
     with progress_bar("speed", rounds) as advance:
         times = race(denoisers, filters, rounds, advance)
     footage = replace(AREA, shape=shape)
-    with progress_bar("error", footage.parts_to_render + footage.frames) as advance:
+    with progress_bar("error", footage.chunks + footage.frames) as advance:
         errors = qualities(denoisers, filters, footage, advance)
     about = provenance(device) | {
         "svgf_cl default": "as shipped" if settings == Settings() else str(settings),

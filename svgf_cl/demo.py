@@ -28,6 +28,7 @@ from svgf_cl.metrics import Metrics, measure
 from svgf_cl.pictures import still, write_preview
 from svgf_cl.sequence import check_leftovers, frame_path, read_picture, write_frame, write_picture
 from svgf_cl.settings import Settings
+from tracer.references import CHUNK, chunks
 
 # From here on the history is long enough for the filter to be judged by.
 WARM = 8
@@ -48,7 +49,7 @@ class Demo:
     shape : (int, int)
         (height, width) in pixels.
     reference_spp : int
-        Samples per pixel of a reference, >= 1.
+        Samples per pixel of a reference, >= 1; rounded up to whole chunks.
     """
 
     folder: Path
@@ -94,11 +95,12 @@ class Demo:
             yield denoiser.profile()
 
     def render_references(self, advance: Callable[[], None]) -> None:
-        """Render the references of the compared frames; `advance` is called after each sample per pixel."""
+        """Render the references of the compared frames; `advance` is called `chunks` times for each of them."""
         make_folder(self.folder / "reference")
+        references = tracer.References(self.shot)
         for number in self.compared:
-            picture = tracer.render_reference(self.shot, number, spp=self.reference_spp, progress=lambda *_: advance())
-            write_picture(self.path("reference", number), picture)
+            estimate = references.render(number, self.reference_spp, advance)
+            references.write(self.path("reference", number), number, estimate)
 
     def measure(self, kind: str) -> dict[int, Metrics]:
         """Measure the compared frames of one kind against the reference, by number."""
@@ -113,7 +115,7 @@ class Demo:
             labels = {
                 "noisy": "noisy, 1 spp",
                 "denoised": "denoised" if number else "denoised, first frame: no history",
-                "reference": f"reference, {self.reference_spp} spp",
+                "reference": f"reference, {CHUNK * chunks(self.reference_spp)} spp",
             }
             panels = {label: to_bytes(read_picture(self.path(kind, number))) for kind, label in labels.items()}
             write_image(self.still_path(number), still(panels))

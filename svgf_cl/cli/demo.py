@@ -39,6 +39,7 @@ def demo(
     require_tracer()
     require_ssim()
     from svgf_cl.demo import SETTINGS, Demo
+    from tracer.references import chunks
 
     shape = parse_size(size)
     if min(shape) < SSIM_WINDOW:
@@ -48,7 +49,7 @@ def demo(
     denoiser = Denoiser(run.shape, settings=SETTINGS)
     print(f"device: {denoiser.queue.device.name.strip()} ({denoiser.queue.device.platform.name})")
     profiles = list(tracked(run.denoise(denoiser), frames, "rendering and denoising"))
-    with progress_bar("references", total=len(run.compared) * reference_spp) as advance:
+    with progress_bar("references", total=len(run.compared) * chunks(reference_spp)) as advance:
         run.render_references(advance)
     run.write_stills()
     run.write_preview()

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from functools import partial
+from math import inf
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from svgf_cl.cli.console import progress_bar, tracked
+from svgf_cl.cli.console import share_bar, tracked
 from svgf_cl.cli.options import Output, Size, parse_size
 from svgf_cl.cli.scenes import open_scene, read_sky, require_tracer
 from svgf_cl.files import make_folder
-from svgf_cl.sequence import check_leftovers, frame_path, write_frame, write_picture
+from svgf_cl.sequence import check_leftovers, frame_path, write_frame
+
+if TYPE_CHECKING:
+    from tracer import Goal, References
+    from tracer.estimate import Step
+    from tracer.scheduling import Map
 
 CAMERA_HELP = (
     "Position, point looked at, vertical field of view in degrees and, if it is not +Y, the direction that is up: "
@@ -23,6 +31,12 @@ SKY_HELP = (
 )
 SCENE_HELP = "A folder with a scene.json; a glTF, GLB or OBJ file; or the name of a built-in scene: cornell."
 ALTERNATIVE_HELP = "Light the scene by the alternative_lights of its scene.json."
+REFERENCE_HELP = "Also write a reference of each frame, of at least so many samples per pixel; 0: none."
+ERROR_HELP = (
+    "Also write a reference of each frame whose relative error (the root of relMSE) is estimated to be at most this, "
+    "for example 0.01; of at least 64 samples per pixel unless --reference-spp is given."
+)
+SCHEDULER_HELP = "Render on the workers of the Dask scheduler there, for example tcp://10.0.0.7:8786."
 
 
 def render(
@@ -37,14 +51,15 @@ def render(
     jitter: Annotated[bool, typer.Option(help="Move the rays within the pixel, by a new offset each frame.")] = True,
     seed: Annotated[int, typer.Option(metavar="N", min=0, help="Another seed gives other noise.")] = 0,
     bounces: Annotated[int, typer.Option(metavar="N", min=0, help="Surfaces a path visits after the first.")] = 1,
-    reference_spp: Annotated[
-        int, typer.Option(min=0, metavar="SPP", help="Also write a reference of each frame; 0: none.")
-    ] = 0,
+    reference_spp: Annotated[int, typer.Option(min=0, metavar="SPP", help=REFERENCE_HELP)] = 0,
+    until_error: Annotated[float | None, typer.Option(metavar="ERROR", help=ERROR_HELP)] = None,
+    scheduler: Annotated[str | None, typer.Option(metavar="ADDRESS", help=SCHEDULER_HELP)] = None,
 ) -> None:
     """Render a sequence with the built-in path tracer.
 
     Writes frame.0000.exr and so on: noisy radiance and all that the denoiser wants to know, as named channels; with
-    --reference-spp also reference.0000.exr and so on.
+    --reference-spp or --until-error also reference.0000.exr and so on. References are kept in the user's cache folder
+    as they grow: after a break the same command goes on where it was.
 
     \b
     Examples:
@@ -52,23 +67,37 @@ def render(
       svgf-cl render ../shared/scenes/garden --alternative-lights -o out/garden
       svgf-cl render sponza.glb --camera 8,3,0/0,3,0/60 --camera 6,2,1/0,3,0/60 --sky 0.8,0.9,1 -o out/sponza
       svgf-cl render cornell --frames 4 --size 320x180 --reference-spp 256 -o out/box
+      svgf-cl render cornell --frames 4 --until-error 0.02 --scheduler tcp://10.0.0.7:8786 -o out/box
     """
     require_tracer()
-    from tracer import Camera, CameraPath, Shot, render_reference, render_sequence
+    from tracer import Camera, CameraPath, Goal, References, Shot, render_frame, scheduled
 
     shape = parse_size(size)
     cameras = [Camera.parse(text) for text in camera]
     world = open_scene(scene, read_sky(sky) if sky else None, alternative_lights=alternative_lights)
     shot = Shot(world, shape, frames, CameraPath.through(cameras) if cameras else None)
-    folder, written = make_folder(output), ("frame", "reference") if reference_spp else ("frame",)
+    goal = None
+    if reference_spp or until_error is not None:
+        goal = Goal(reference_spp or Goal.spp, inf if until_error is None else until_error)
+    folder, written = make_folder(output), ("frame", "reference") if goal else ("frame",)
     check_leftovers(folder, [frame_path(folder, n, stem) for stem in written for n in range(frames)])
-    noisy = render_sequence(shot, spp=spp, seed=seed, jitter=jitter, bounces=bounces)
-    for number, frame in enumerate(tracked(noisy, frames, "rendering")):
-        write_frame(frame_path(folder, number), frame)
-    with progress_bar("references", total=frames * reference_spp) as advance:
-        for number in range(frames if reference_spp else 0):
-            picture = render_reference(
-                shot, number, spp=reference_spp, seed=seed, bounces=bounces, progress=lambda *_: advance()
-            )
-            write_picture(frame_path(folder, number, "reference"), picture)
+    with scheduled(scheduler) as run:
+        task = partial(render_frame, spp=spp, seed=seed, jitter=jitter, bounces=bounces)
+        for number, frame in enumerate(tracked(run(task, shot, range(frames)), frames, "rendering")):
+            write_frame(frame_path(folder, number), frame)
+        if goal:
+            write_references(folder, References(shot, seed, jitter, bounces), goal, run)
     print(f"{frames} frames in {output}")
+
+
+def write_references(folder: Path, references: References, goal: Goal, run: Map) -> None:
+    """Render and write the reference of each frame, and print how good they are."""
+    frames = references.shot.frames
+    reached: list[Step] = []
+    with share_bar("references", frames) as report:
+        for number in range(frames):
+            for estimate in references.refine(number, goal, run):
+                report(number + goal.share(estimate), f"{estimate.spp} spp, error {estimate.error:.2g}")
+            references.write(frame_path(folder, number, "reference"), number, estimate)
+            reached.append(estimate.history[-1])
+    print(f"references: at least {min(r.spp for r in reached)} spp, error at most {max(r.error for r in reached):.2g}")

@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-from benchmarks import footage, measurements
-from benchmarks.footage import PART, Footage
+from benchmarks import measurements
+from benchmarks.footage import Footage
 from benchmarks.variants import Variant
 from svgf_cl import Settings
 
 VARIANTS = (Variant("plain"), Variant("antialiased", Settings(taa=True)), Variant("split", signals=2))
-CENTRE = Footage("centre", jitter=False, shape=(45, 80), band=(0.6, 0.9), frames=4, spp=2 * PART)
-AREA = Footage("area", jitter=True, shape=(45, 80), band=(0.6, 0.9), frames=4, spp=2 * PART)
-
-
-@pytest.fixture(autouse=True)
-def _cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(footage, "cache_folder", lambda: tmp_path)
+CENTRE = Footage("centre", jitter=False, shape=(45, 80), band=(0.6, 0.9), frames=4, spp=32)
+AREA = Footage("area", jitter=True, shape=(45, 80), band=(0.6, 0.9), frames=4, spp=32)
 
 
 def test_everything_is_measured_and_progress_adds_up(monkeypatch: pytest.MonkeyPatch) -> None:

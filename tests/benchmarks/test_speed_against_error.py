@@ -12,7 +12,7 @@ pytest.importorskip("matplotlib")
 pytest.importorskip("flip_evaluator")
 import typer
 
-from benchmarks import footage, speed_against_error
+from benchmarks import speed_against_error
 from benchmarks.variants import VARIANTS
 
 APP = typer.Typer()
@@ -20,9 +20,8 @@ APP.command()(speed_against_error.speed_against_error)
 
 
 def test_table_plot_and_json_are_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(footage, "cache_folder", lambda: tmp_path / "cache")
     monkeypatch.setattr(speed_against_error, "VARIANTS", VARIANTS[:2])
-    arguments = ["-o", str(tmp_path / "out"), "--size", "96x100", "--rounds", "1", "--spp", "64"]
+    arguments = ["-o", str(tmp_path / "out"), "--size", "96x100", "--rounds", "1", "--spp", "32"]
     run = CliRunner().invoke(APP, arguments, catch_exceptions=False)
     assert run.exit_code == 0
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"results.json", "table.md", "plot.png"}
@@ -34,8 +33,8 @@ def test_table_plot_and_json_are_written(tmp_path: Path, monkeypatch: pytest.Mon
     assert "noise of the truth, centre" in (tmp_path / "out" / "table.md").read_text()
 
 
-def test_half_a_part_is_refused(tmp_path: Path) -> None:
+def test_half_a_chunk_is_refused(tmp_path: Path) -> None:
     run = CliRunner().invoke(APP, ["-o", str(tmp_path / "out"), "--spp", "100"])
     assert run.exit_code == 2
-    assert "multiple of 64" in run.output
+    assert "multiple of 32" in run.output
     assert not (tmp_path / "out").exists()

@@ -11,12 +11,12 @@ import numpy as np
 import pyopencl as cl
 import pytest
 
-from benchmarks import footage, versus_oidn
-from benchmarks.footage import PART, Footage
+from benchmarks import versus_oidn
+from benchmarks.footage import Footage
 from svgf_cl import Denoiser, Frame
 from svgf_cl.room import room_frames
 
-FOOTAGE = Footage("area", jitter=True, band=(0.6, 0.9), frames=4, spp=2 * PART)
+FOOTAGE = Footage("area", jitter=True, band=(0.6, 0.9), frames=4, spp=32)
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *argv: str | Path) -> int:
@@ -34,11 +34,6 @@ def test_wrong_input_ends_in_one_line(monkeypatch: pytest.MonkeyPatch, capsys: p
     assert said.count("\n") == 1
 
 
-@pytest.fixture
-def _cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(footage, "cache_folder", lambda: tmp_path)
-
-
 class Alone:
     """Stands for a denoiser of single frames that returns its input; notes how many it saw."""
 
@@ -49,7 +44,6 @@ class Alone:
         return frame.color
 
 
-@pytest.mark.usefixtures("_cache")
 def test_errors_are_of_the_judged_frames(queue: cl.CommandQueue) -> None:
     pytest.importorskip("flip_evaluator")
     film = replace(FOOTAGE, shape=(45, 80))
@@ -57,7 +51,7 @@ def test_errors_are_of_the_judged_frames(queue: cl.CommandQueue) -> None:
     used = next(room_frames(film.shape, 1))
     den.denoise(used)  # other fields than the footage has, and a history that is not its own
     ticks: list[None] = []
-    steps = film.parts_to_render + film.frames
+    steps = film.chunks + film.frames
     found = versus_oidn.qualities({"svgf_cl": den}, {"alone": alone}, film, lambda: ticks.append(None))
     assert found["alone"] == found["noisy"]
     assert found["svgf_cl"].psnr > found["noisy"].psnr
@@ -65,7 +59,6 @@ def test_errors_are_of_the_judged_frames(queue: cl.CommandQueue) -> None:
     assert len(ticks) == steps
 
 
-@pytest.mark.usefixtures("_cache")
 def test_it_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
     target = tmp_path / "versus.json"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import sys
 from dataclasses import replace
@@ -141,7 +142,18 @@ def test_render_writes_every_field_of_every_frame(rendered: Path) -> None:
     assert sorted(path.name for path in rendered.glob("frame.*")) == NAMES
     assert set(read_channels(rendered / NAMES[0])) == {name for names in CHANNEL_NAMES.values() for name in names}
     assert read_frame(rendered / NAMES[0]).shape == (18, 32)
-    assert set(read_channels(rendered / "reference.0002.exr")) == {"R", "G", "B"}
+    assert set(read_channels(rendered / "reference.0002.exr")) == {
+        *(name for field, names in CHANNEL_NAMES.items() if field != "hit_distance" for name in names),
+        *("error.R", "error.G", "error.B"),
+    }
+
+
+def test_references_reach_the_error_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    argv = ("render", "cornell", "--frames", "1", "--size", "32x18", "--until-error", "0.05", "-o", tmp_path)
+    assert run(*argv) == 0
+    said = re.search(r"references: at least (\d+) spp, error at most ([\d.]+)", capsys.readouterr().out)
+    assert int(said[1]) > 64
+    assert 0.04 < float(said[2]) <= 0.05
 
 
 def test_render_is_reproducible_and_seeded(rendered: Path, tmp_path: Path) -> None:
@@ -248,6 +260,15 @@ def test_a_bad_sky(sky: str, tmp_path: Path, refused) -> None:
 
 def test_a_bad_camera(tmp_path: Path, refused) -> None:
     refused("camera: expected", "render", "cornell", "--camera", "over there", "-o", tmp_path)
+
+
+@pytest.mark.parametrize("error", ["0", "-1", "nan"])
+def test_an_error_that_is_never_reached(error: str, tmp_path: Path, refused) -> None:
+    refused("expected an error above 0", "render", "cornell", "--until-error", error, "-o", tmp_path)
+
+
+def test_a_scheduler_that_is_not_there(tmp_path: Path, refused) -> None:
+    refused("expected a Dask scheduler at nowhere", "render", "cornell", "--scheduler", "nowhere", "-o", tmp_path)
 
 
 def test_a_missing_scene(tmp_path: Path, refused) -> None:
