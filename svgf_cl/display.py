@@ -17,6 +17,7 @@ Bytes = npt.NDArray[np.uint8]
 # Rec. 709.
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 MIDDLE_GREY = 0.18
+BLOCK = 8  # pixels
 
 
 def display(linear: Linear, exposure: float = 0.0) -> npt.NDArray[np.float64]:
@@ -43,16 +44,20 @@ def display(linear: Linear, exposure: float = 0.0) -> npt.NDArray[np.float64]:
 
 
 def automatic_exposure(linear: Linear) -> float:
-    """Stops that bring the log-average luminance of a picture (H, W, 3) to middle grey, 0.18.
+    """Stops that bring the log-average luminance of a picture (H, W, 3) to middle grey.
+
+    Averaged over blocks first, so that noise changes little; black ones, where nothing was lit, do not count. A picture
+    that is black all over stays as it is.
 
     Source: Reinhard et al., Photographic Tone Reproduction for Digital Images, SIGGRAPH 2002, equations 1 and 2.
-    Luminance below a thousandth of its mean counts as that: black pixels say nothing. A black picture stays as it is.
     """
     luminance = np.asarray(linear, np.float64) @ LUMINANCE
-    mean = luminance.mean()
-    if not mean > 0.0:
-        return 0.0
-    return float(np.log2(MIDDLE_GREY) - np.log2(np.maximum(luminance, 1e-3 * mean)).mean())
+    for axis, length in enumerate(luminance.shape):
+        starts = range(0, length, BLOCK)
+        sizes = np.diff([*starts, length])
+        luminance = np.add.reduceat(luminance, starts, axis) / np.expand_dims(sizes, 1 - axis)
+    lit = luminance[luminance > 0.0]
+    return float(np.log2(MIDDLE_GREY) - np.log2(lit).mean()) if lit.size else 0.0
 
 
 def to_bytes(linear: Linear, exposure: float = 0.0) -> Bytes:

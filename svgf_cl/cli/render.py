@@ -29,7 +29,7 @@ SKY_HELP = (
     "Light from everywhere outside the scene: linear radiance, for example 0.4,0.5,0.7, or a .hdr or .exr image of all "
     "directions. In place of the scene's own sky."
 )
-SCENE_HELP = "A folder with a scene.json; a glTF, GLB or OBJ file; or the name of a built-in scene: cornell."
+SCENE_HELP = "A folder with a scene.json; a glTF, GLB or OBJ file; or a built-in scene, which svgf-cl scenes lists."
 ALTERNATIVE_HELP = "Light the scene by the alternative_lights of its scene.json."
 REFERENCE_HELP = "Also write a reference of each frame, of at least so many samples per pixel; 0: none."
 ERROR_HELP = (

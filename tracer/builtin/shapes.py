@@ -59,7 +59,7 @@ def panel(centre: Vector, target: Vector, size: tuple[float, float], material: M
 def place(
     mesh: trimesh.Trimesh,
     material: Material,
-    position: Vector = (0.0, 0.0, 0.0),
+    position: Vector,
     degrees: float = 0.0,
     *,
     smooth: bool = False,
