@@ -72,7 +72,10 @@ def texture_colour(textures: Textures, texture: int, u: float, v: float) -> Vec3
 def texture_opacity(textures: Textures, texture: int, u: float, v: float) -> float:
     """Opacity of a texture at (u, v), 0..1."""
     first, second, third, fourth, fx, fy = _texels(textures, texture, u, v)
-    return _mix(first >> 24, second >> 24, third >> 24, fourth >> 24, fx, fy) / 255.0
+    # As floats: the difference of unsigned numbers is never below 0.
+    upper = np.float64(first >> 24), np.float64(second >> 24)
+    lower = np.float64(third >> 24), np.float64(fourth >> 24)
+    return _mix(*upper, *lower, fx, fy) / 255.0
 
 
 @compiled

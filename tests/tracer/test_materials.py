@@ -34,6 +34,8 @@ def test_a_point_is_solid_from_the_cutoff_on() -> None:
     assert is_solid(table, 0, 0.75, 0.5)
     assert is_solid(table, 0, 0.5, 0.5)
     assert not is_solid(table, 0, 0.499, 0.5)
+    assert is_solid(table, 0, 0.999, 0.5)
+    assert not is_solid(table, 0, 1.001, 0.5)
     assert is_solid(table, 1, 0.25, 0.5)
 
 

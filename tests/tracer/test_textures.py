@@ -1,13 +1,17 @@
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from tracer.textures import LINEAR, Textures, srgb_to_linear, texture_colour, texture_opacity
 
 SMALL = np.arange(0, 180, 10, dtype=np.uint8).reshape(2, 3, 3)
 OTHER = np.full((1, 1, 3), (255, 0, 128), np.uint8)
-LEAF = np.array([[[9, 9, 9, 0], [9, 9, 9, 255]], [[9, 9, 9, 51], [9, 9, 9, 102]]], np.uint8)
+LEAF = np.array([[[9, 80, 255, 0], [99, 9, 7, 255]], [[0, 9, 90, 51], [9, 9, 9, 102]]], np.uint8)
 ALL = Textures.of([SMALL, OTHER, LEAF])
 
 
@@ -41,11 +45,20 @@ def test_corners_mix_the_texels_of_all_four(corner: tuple[float, float]) -> None
 
 def test_each_texture_is_found() -> None:
     np.testing.assert_allclose(texture_colour(ALL, 1, 0.9, 0.1), LINEAR[OTHER[0, 0]], rtol=1e-6)
-    np.testing.assert_allclose(texture_colour(ALL, 2, 0.9, 0.1), LINEAR[LEAF[0, 0, :3]], rtol=1e-6)
+    np.testing.assert_allclose(texture_colour(ALL, 2, 0.25, 0.75), LINEAR[LEAF[0, 0, :3]], rtol=1e-6)
 
 
-def test_opacity_is_linear_and_1_where_an_image_has_none() -> None:
+def test_an_image_without_opacity_is_opaque() -> None:
     assert texture_opacity(ALL, 0, 0.2, 0.2) == 1.0
-    assert texture_opacity(ALL, 2, 0.75, 0.75) == 1.0
-    assert texture_opacity(ALL, 2, 0.25, 0.25) == pytest.approx(0.2)
-    assert texture_opacity(ALL, 2, 0.5, 0.5) == pytest.approx((0 + 1 + 0.2 + 0.4) / 4)
+
+
+@settings(deadline=None)  # the first call compiles
+@given(st.floats(-2, 2), st.floats(-2, 2))
+def test_colour_and_opacity_are_bilinear(u: float, v: float) -> None:
+    x, y = u * 2 - 0.5, (1 - v) * 2 - 0.5
+    left, top = math.floor(x), math.floor(y)
+    texels = LEAF[np.ix_([top % 2, (top + 1) % 2], [left % 2, (left + 1) % 2])]
+    weights = np.outer((1 - (y - top), y - top), (1 - (x - left), x - left))
+    assert texture_opacity(ALL, 2, u, v) == pytest.approx((weights * texels[..., 3]).sum() / 255, abs=1e-9)
+    colour = (weights[..., None] * LINEAR[texels[..., :3]]).sum((0, 1))
+    np.testing.assert_allclose(texture_colour(ALL, 2, u, v), colour, rtol=1e-5)
