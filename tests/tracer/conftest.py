@@ -7,6 +7,7 @@ import pytest
 
 from tracer.geometry import Instance
 from tracer.materials import Material
+from tracer.motion import Motion
 
 Quad = Callable[..., Instance]
 
@@ -20,10 +21,11 @@ def quad() -> Quad:
         right: tuple[float, float, float],
         up: tuple[float, float, float],
         material: Material | None = None,
+        motion: Motion | None = None,
     ) -> Instance:
         st = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]], float)
         corners = np.array(corner) + st[..., :1] * np.array(right) + st[..., 1:] * np.array(up)
-        return Instance(corners, material or Material(), uv=st)
+        return Instance(corners, material or Material(), uv=st, motion=motion)
 
     return make
 

@@ -9,12 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from tests.tracer.estimates import AT_ORIGIN, assert_mean, still, under_rectangle
 from tracer import Camera, CameraPath, Shot, load_scene, render_reference
 from tracer.geometry import Instance
 from tracer.lights import PointLight, Sun
 from tracer.materials import Material
+from tracer.motion import Motion
 from tracer.scene import Scene
 from tracer.sky import Environment
 
@@ -195,6 +199,57 @@ def test_sky_and_suns_that_overlap_add_up(floor: Floor, material: Material) -> N
     assert_mean(together, sum(part.mean((0, 1)) for part in alone), precision=0.003)
 
 
+def sheet(quad: Quad, height: float, opacity: NDArray[np.uint8], *, moving: bool = False) -> Instance:
+    """A large square with an alpha mask, across the vertical; its fronts look down."""
+    image = np.concatenate([np.full((*opacity.shape, 3), 128, np.uint8), opacity[..., None]], axis=2)
+    material = Material(BLACK, base_texture=image, alpha_cutoff=0.5)
+    return quad((-4, height, -4), (8, 0, 0), (0, 0, 8), material, Motion([]) if moving else None)
+
+
+# Sheets with nothing on them, with all of it solid, and solid on one half: x < 0.
+EMPTY, SOLID = np.zeros((1, 1), np.uint8), np.full((1, 1), 255, np.uint8)
+HALF = np.repeat(np.array([[255, 0]], np.uint8), 32, axis=1)
+
+
+@pytest.mark.parametrize("moving", [(False, False, False), (True, True, True), (False, True, False)])
+def test_no_ray_of_a_path_meets_what_is_transparent(floor: Floor, quad: Quad, moving: tuple[bool, ...]) -> None:
+    """Rays of the camera, of a bounce, and towards lights: the picture is the same, noise and all."""
+    lamp = quad((-1, 1.5, -0.4), (2, 0, 0), (0, 0, 0.8), Material(BLACK, emission=(10.0, 5.0, 1.0)))
+    wall = quad((-2, 0, -2), (4, 0, 0), (0, 4, 0), MATT)
+    layers = [sheet(quad, 0.1 * (n + 1), EMPTY, moving=m) for n, m in enumerate(moving)]
+    bare, covered = (
+        still(Scene([floor(MATT), wall, lamp, *more], lights=[Sun((1, 2, 3), WHITE)], sky=SKY), AT_ORIGIN, (64, 64))
+        for more in ([], layers)
+    )
+    assert bare.indirect.max() > 0
+    for name in ("id", "depth", "direct", "indirect"):
+        np.testing.assert_allclose(getattr(covered, name), getattr(bare, name), rtol=1e-3, atol=1e-4)
+
+
+@pytest.mark.parametrize("moving", [False, True])
+def test_half_a_sheet_casts_half_a_shadow(floor: Floor, quad: Quad, moving: bool) -> None:
+    light = PointLight((0.0, 2.0, 0.0), (4.0, 4.0, 4.0))
+    layers = [sheet(quad, 1.0, HALF, moving=moving), sheet(quad, 1.1, EMPTY)]
+    below = Camera((0, 0.9, 0), (0, 0, 1e-3), up=(0, 0, -1), fov_y=90.0)
+    frame = still(Scene([floor(MATT), *layers], lights=[light]), below, (64, 64), bounces=0)
+    assert (frame.id == 1).all()
+    np.testing.assert_array_equal((frame.direct > 0).all(-1), np.arange(64) >= 32 + np.zeros((64, 1)))
+
+
+def test_a_camera_sees_through_layers_to_the_first_that_is_solid(floor: Floor, quad: Quad) -> None:
+    layers = [
+        sheet(quad, 1.0, SOLID),
+        sheet(quad, 1.5, EMPTY, moving=True),
+        sheet(quad, 2.0, HALF, moving=True),
+        sheet(quad, 3.0, HALF.T),
+    ]
+    frame = still(Scene([floor(MATT), *layers], sky=WHITE), Camera((0, 4, 0), (0, 0, 1e-3), up=(0, 0, -1)), (64, 64))
+    x, y = np.meshgrid(np.arange(64) >= 32, np.arange(64) >= 32)
+    # The image's top is v = 1: towards +z, at the bottom of the picture.
+    np.testing.assert_array_equal(frame.id, np.where(y, 5, np.where(x, 2, 4)))
+    np.testing.assert_allclose(frame.depth, np.where(y, 1, np.where(x, 3, 2)), rtol=1e-3)
+
+
 def test_bounces_only_add_light() -> None:
     camera = Camera((0, 1.0, 6.8), (0, 1.0, 5.8), fov_y=19.5)
     means = [still(room(), camera, (48, 48), spp=4, bounces=bounces).color.mean() for bounces in (0, 1, 2)]
@@ -210,6 +265,44 @@ def room() -> Scene:
             Instance(lamp.triangles + np.array((0, 1.8, 0)), Material(emission=(9.0, 9.0, 9.0))),
         ]
     )
+
+
+colours = st.tuples(*[st.sampled_from([0.0, 0.5, 1.0])] * 3)
+materials = st.builds(
+    Material,
+    base_colour=colours,
+    emission=colours,
+    metallic=st.sampled_from([0.0, 0.5, 1.0]),
+    roughness=st.sampled_from([0.0, 0.01, 0.3, 1.0]),
+    ior=st.sampled_from([1.0, 1.5, 20.0]),
+    transmissive=st.booleans(),
+    two_sided=st.booleans(),
+)
+places = st.tuples(*[st.sampled_from([-1.0, -0.5, 0.0, 0.5, 1.0])] * 3)
+triangles = st.lists(st.tuples(places, places, places), min_size=1, max_size=4).map(np.array)
+normals = st.none() | st.tuples(*[st.sampled_from([-1.0, 0.0, 1.0])] * 3)
+lights = st.one_of(
+    st.builds(
+        Sun, st.sampled_from([(0.0, 1.0, 0.0), (1.0, 1.0, 1.0)]), colours, st.sampled_from([0.0, 1e-4, 1.0, 89.0])
+    ),
+    st.builds(PointLight, places, colours, reach=st.sampled_from([0.1, math.inf])),
+)
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.lists(st.tuples(triangles, normals, materials), max_size=4), st.lists(lights, max_size=2), materials)
+def test_light_is_finite_whatever_the_scene(bodies: list, lamps: list, last: Material) -> None:
+    """Triangles without area, in each other, in lights; mirrors and matt ones; normals that fit nothing."""
+    instances = [
+        Instance(corners, material, None if normal is None else np.broadcast_to(normal, corners.shape))
+        for corners, normal, material in bodies
+    ]
+    scene = Scene([*instances, box(last)], lights=lamps, sky=(0.1, 0.1, 0.1))
+    frame = still(scene, Camera((0.7, 0.3, 1.2), (0, 0, 0), fov_y=90.0, aperture=0.1), (12, 12), bounces=4)
+    for value in (frame.color, frame.albedo, frame.normal, frame.motion):
+        assert np.isfinite(value).all()
+    assert frame.color.min() >= 0.0
+    assert ((frame.albedo >= 0.0) & (frame.albedo <= 1.0 + 1e-6)).all()
 
 
 def test_paths_end_after_too_much_glass(floor: Floor) -> None:

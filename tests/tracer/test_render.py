@@ -1,122 +1,270 @@
+"""Frames and samples: that they are whole, the same however they are traced, and independent of each other."""
+
 from __future__ import annotations
 
+import math
 import os
+from collections.abc import Callable
 
 import numpy as np
 import pytest
+import trimesh
+from numpy.typing import NDArray
 
-from tracer import CameraPath, SceneError, builtin_scene, render_frame, render_reference, render_sequence
-from tracer.render import TILE
+from tests.tracer.estimates import AT_ORIGIN
+from tracer import CameraPath, Scene, SceneError, Shot, render, render_frame, render_reference, render_sequence
+from tracer.camera import Camera
+from tracer.geometry import Instance
+from tracer.lights import PointLight, Sun
+from tracer.materials import Material
+from tracer.motion import Motion, Track
+from tracer.render import FRAME, REFERENCE, trace_samples
+from tracer.sampling import pixel_jitter
+from tracer.sky import Environment
+from tracer.textures import LINEAR
 
-SHAPE = (45, 80)
-ROOM = builtin_scene()
-VIEW = ROOM.camera_path.at(0.5)
+SHAPE = (24, 32)
+BLACK, WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
+CHECKS = np.full((8, 8, 4), 255, np.uint8)
+CHECKS[..., 3] = 255 * (np.indices((8, 8)).sum(0) % 2)
+
+Quad = Callable[..., Instance]
+Floor = Callable[[Material], Instance]
+
+
+@pytest.fixture(scope="module")
+def everything(floor: Floor, quad: Quad) -> Shot:
+    """A shot with all that a scene can have."""
+    ball = trimesh.creation.icosphere(2, 0.6).triangles
+    slide = Motion.sliding([0.0, 1.0], [(0, 0, 0), (4, 0, 0)])
+    scene = Scene(
+        [
+            floor(Material((0.6, 0.5, 0.4), roughness=0.4, ior=1.5)),
+            quad((-2, 0, -1), (4, 0, 0), (0, 2, 0), Material(base_texture=CHECKS, alpha_cutoff=0.5)),
+            Instance(ball + np.array((-1, 0.6, 0)), Material(WHITE, metallic=1.0, roughness=0.2), motion=slide),
+            Instance(ball + np.array((1, 0.6, 0.5)), Material(WHITE, transmissive=True, ior=1.5)),
+            quad((-1, 3, -1), (2, 0, 0), (0, 0, 2), Material(BLACK, (4, 4, 4), brightness=Track([0, 1], [[1], [0]]))),
+            quad((-2.2, 0, 1), (1, 0, 0), (0, 1, 0), Material(base_texture=CHECKS, alpha_cutoff=0.5), slide),
+        ],
+        lights=[Sun((1, 2, 1), WHITE, 2.0), PointLight((0, 2, 2), WHITE, motion=slide)],
+        sky=Environment(np.random.default_rng(1).random((4, 8, 3)).astype(np.float32)),
+    )
+    cameras = [Camera((x, 1.5, 5), (x / 2, 0.7, 0), aperture=0.05, shutter=0.5) for x in (0.0, 1.0)]
+    return Shot(scene, SHAPE, 5, CameraPath.through(cameras), fps=5.0)
+
+
+@pytest.fixture(scope="module")
+def lamp(floor: Floor, quad: Quad) -> Shot:
+    """A floor under a lamp: every pixel shows the same point, and is an independent estimate of the same light."""
+    above = quad((-1, 1.5, -0.4), (2, 0, 0), (0, 0, 0.8), Material(BLACK, emission=(10.0, 5.0, 1.0)))
+    scene = Scene([floor(Material(roughness=0.5, ior=1.5)), above])
+    return Shot(scene, (128, 128), 5, CameraPath.static(AT_ORIGIN))
 
 
 @pytest.mark.parametrize("spp", [1, 3])
-def test_a_frame_is_whole(spp: int) -> None:
-    frame = render_frame(ROOM, VIEW, None, SHAPE, spp=spp)
+def test_a_frame_is_whole(everything: Shot, spp: int) -> None:
+    frame = render_frame(everything, 1, spp=spp)
     frame.check(SHAPE)
-    assert len(frame.present()) == 9
+    assert len(frame.present()) == 13
     for name, value in frame.present().items():
         assert value.flags.c_contiguous
         assert value.dtype == (np.uint32 if name == "id" else np.float32)
-    np.testing.assert_allclose(frame.color, frame.direct + frame.indirect + frame.emission, rtol=1e-6)
-    assert np.isfinite(frame.color).all()
-    assert frame.direct.max() > 0
-    assert frame.indirect.max() > 0
-    assert frame.emission.max() > 0
+    assert set(np.unique(frame.id)) == {0, 1, 2, 3, 4, 6}
+    for name in ("color", "direct", "indirect", "diffuse", "specular", "emission"):
+        assert np.isfinite(getattr(frame, name)).all()
+        assert getattr(frame, name).max() > 0.0
 
 
-def test_an_image_does_not_hang_on_the_number_of_threads(monkeypatch: pytest.MonkeyPatch) -> None:
-    shape = (200, 200)
-    assert shape[0] * shape[1] > 2 * TILE
-    images = []
-    for threads in (1, 5):
+@pytest.mark.parametrize("spp", [1, 3])
+def test_both_ways_of_splitting_light_add_up(everything: Shot, spp: int) -> None:
+    frame = render_frame(everything, 1, spp=spp)
+    np.testing.assert_allclose(frame.color, frame.direct + frame.indirect + frame.emission, rtol=1e-5)
+    np.testing.assert_allclose(frame.color, frame.diffuse + frame.specular + frame.emission, rtol=1e-5)
+
+
+def images(shot: Shot) -> list[NDArray[np.float32]]:
+    frame = render_frame(shot, 2, spp=2, seed=9)
+    tiles = trace_samples(shot, 2, range(3), stream=REFERENCE, seed=9, bounces=2)
+    return [*frame.present().values(), np.concatenate([tile.radiance.color for tile in tiles])]
+
+
+def test_an_image_hangs_neither_on_the_number_of_threads_nor_on_its_tiles(
+    everything: Shot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    alone = images(everything)
+    for threads, tile in ((1, 1 << 14), (5, 100), (2, 7)):
         monkeypatch.setattr(os, "cpu_count", lambda threads=threads: threads)
-        frame = render_frame(ROOM, VIEW, None, shape, frame_index=2, spp=2, seed=9)
-        images.append((frame.color, frame.motion, frame.id, render_reference(ROOM, VIEW, shape, spp=2, seed=9)))
-    for one, many in zip(*images, strict=True):
-        np.testing.assert_array_equal(one, many)
+        monkeypatch.setattr(render, "TILE", tile)
+        for one, many in zip(alone, images(everything), strict=True):
+            np.testing.assert_array_equal(one, many)
 
 
-def test_noise_differs_by_seed_and_by_frame() -> None:
-    def color(**key: int) -> np.ndarray:
-        return np.asarray(render_frame(ROOM, VIEW, None, SHAPE, jitter=False, **key).color)
+def test_a_sample_is_the_same_whichever_others_are_traced(everything: Shot) -> None:
+    def sample(*numbers: int, rows: tuple[int, int] | None = None) -> dict[int, NDArray[np.float32]]:
+        tiles = trace_samples(everything, 1, numbers, stream=REFERENCE, rows=rows, described=True)
+        return {tile.sample: np.concatenate([tile.radiance.color, tile.features.motion], axis=1) for tile in tiles}
 
-    first = color(seed=1, frame_index=1)
-    np.testing.assert_array_equal(first, color(seed=1, frame_index=1))
-    assert not np.array_equal(first, color(seed=2, frame_index=1))
-    assert not np.array_equal(first, color(seed=1, frame_index=2))
+    together = sample(0, 1, 2, 3)
+    backwards = sample(3, 1)
+    assert list(backwards) == [3, 1]
+    for number, values in backwards.items():
+        np.testing.assert_array_equal(values, together[number])
+    rows = sample(2, rows=(7, 11))[2].reshape(4, SHAPE[1], -1)
+    np.testing.assert_array_equal(rows, together[2].reshape(*SHAPE, -1)[7:11])
 
 
-def test_the_gbuffer_is_the_first_samples() -> None:
-    one, many = (render_frame(ROOM, VIEW, None, SHAPE, frame_index=3, spp=spp) for spp in (1, 4))
-    for name in ("albedo", "normal", "depth", "motion", "id"):
+@pytest.mark.parametrize("rows", [(-1, 5), (5, 5), (6, 5), (20, 25)])
+def test_rows_out_of_the_image_are_named(everything: Shot, rows: tuple[int, int]) -> None:
+    with pytest.raises(SceneError, match="rows: expected 0 <= first < end <= 24"):
+        list(trace_samples(everything, 0, [0], stream=FRAME, rows=rows))
+
+
+def test_frames_samples_and_references_share_no_noise(lamp: Shot) -> None:
+    def noise(stream: int, seed: int, number: int, sample: int) -> NDArray[np.float32]:
+        tiles = trace_samples(lamp, number, [sample], stream=stream, seed=seed, jitter=False)
+        return np.concatenate([tile.radiance.color[:, 0] for tile in tiles])
+
+    first = noise(FRAME, 0, 0, 0)
+    np.testing.assert_array_equal(first, noise(FRAME, 0, 0, 0))
+    np.testing.assert_array_equal(first, render_frame(lamp, 0, jitter=False).color[..., 0].ravel())
+    others = [
+        noise(*key)
+        for key in (
+            [(REFERENCE, 0, 0, sample) for sample in range(4)]
+            + [(FRAME, 0, 0, sample) for sample in range(1, 4)]
+            + [(FRAME, seed, 0, 0) for seed in range(1, 4)]
+            + [(FRAME, 0, number, 0) for number in range(1, 4)]
+        )
+    ]
+    # The pixels of a picture are independent of each other too.
+    others += [np.roll(first, step) for step in (1, 2, 128, 129)]
+    correlation = np.corrcoef([first, *others]) - np.eye(len(others) + 1)
+    assert np.abs(correlation).max() < 5.0 / math.sqrt(len(first))
+
+
+def test_the_gbuffer_is_the_first_samples(everything: Shot) -> None:
+    one, many = (render_frame(everything, 3, spp=spp) for spp in (1, 4))
+    for name in ("albedo", "normal", "depth", "motion", "id", "roughness", "hit_distance"):
         np.testing.assert_array_equal(getattr(one, name), getattr(many, name))
 
 
-def test_more_samples_are_less_noisy() -> None:
-    few, many = (render_frame(ROOM, VIEW, None, SHAPE, spp=spp, jitter=False) for spp in (1, 16))
-    reference = render_frame(ROOM, VIEW, None, SHAPE, spp=64, jitter=False, seed=1).color
-    assert np.square(many.color - reference).mean() < np.square(few.color - reference).mean() / 6
+def test_more_samples_are_less_noisy(lamp: Shot) -> None:
+    few, many = (render_frame(lamp, 0, spp=spp, jitter=False).color[..., 0].std() for spp in (1, 16))
+    assert few / many == pytest.approx(4.0, rel=0.1)
 
 
-def test_a_reference_is_what_frames_converge_to_and_shares_no_noise_with_them() -> None:
-    reference = render_reference(ROOM, VIEW, SHAPE, spp=64)
-    frame = render_frame(ROOM, VIEW, None, SHAPE, spp=64).color
+def test_the_first_sample_lies_at_the_frames_offset_and_further_ones_anywhere_in_the_pixel(quad: Quad) -> None:
+    ramp = np.repeat(np.repeat(np.arange(256, dtype=np.uint8)[None, :, None], 3, axis=2), 2, axis=0)
+    wall = quad((-4, -4, -4), (8, 0, 0), (0, 8, 0), Material(BLACK, emission=WHITE, emission_texture=ramp))
+    shot = Shot(Scene([wall]), (8, 8), 3, CameraPath.static(Camera((0, 0, 0), (0, 0, -4), fov_y=50.0)))
+
+    def place(*samples: int, jitter: bool = True) -> NDArray[np.float64]:
+        """The column that each sample of each pixel shows."""
+        tiles = trace_samples(shot, 2, samples, stream=FRAME, jitter=jitter)
+        color = np.array([tile.radiance.color[:, 0] for tile in tiles])
+        return np.interp(color, LINEAR, np.arange(256)) * 8 / 256 / 4 * shot.camera(0).lens((8, 8)).scale
+
+    centre = place(0, jitter=False)
+    np.testing.assert_allclose(place(0) - centre, pixel_jitter(2)[0], atol=0.01)
+    offset = place(*range(1, 65)) - centre
+    np.testing.assert_allclose([offset.min(), offset.max()], (-0.5, 0.5), atol=0.01)
+    assert offset.std() == pytest.approx(1 / math.sqrt(12), rel=0.03)
+
+
+def test_a_reference_is_what_frames_converge_to(everything: Shot) -> None:
+    reference = render_reference(everything, 1, spp=64)
+    frame = render_frame(everything, 1, spp=64).color
     assert reference.dtype == np.float32
     assert reference.shape == (*SHAPE, 3)
-    assert reference.flags.c_contiguous
-    np.testing.assert_allclose(reference.mean((0, 1)), frame.mean((0, 1)), rtol=0.01)
-    single = render_frame(ROOM, VIEW, None, SHAPE, jitter=False).color
-    assert not np.array_equal(single, render_reference(ROOM, VIEW, SHAPE, spp=1))
+    np.testing.assert_allclose(reference.mean((0, 1)), frame.mean((0, 1)), rtol=0.02)
+    single = render_frame(everything, 1, jitter=False).color
+    assert not np.array_equal(single, render_reference(everything, 1, spp=1, jitter=False))
 
 
-def test_a_reference_without_jitter_is_what_frames_without_jitter_converge_to() -> None:
-    reference = render_reference(ROOM, VIEW, SHAPE, spp=64, jitter=False)
-    frame = render_frame(ROOM, VIEW, None, SHAPE, spp=64, jitter=False).color
-    area = render_reference(ROOM, VIEW, SHAPE, spp=64, seed=1)
-    assert np.square(reference - frame).mean() < 0.7 * np.square(reference - area).mean()
-
-
-def test_rows_of_a_reference_are_those_of_the_whole() -> None:
-    # Within the first tile the noise is the same where the first row is; elsewhere only the mean is.
-    whole = render_reference(ROOM, VIEW, SHAPE, spp=32)
-    np.testing.assert_array_equal(render_reference(ROOM, VIEW, SHAPE, spp=32, rows=(0, 45)), whole)
-    band = render_reference(ROOM, VIEW, SHAPE, spp=32, rows=(20, 30))
-    assert band.shape == (10, 80, 3)
-    errors = {first: np.square(band - whole[first : first + 10]).mean() for first in (19, 20, 21)}
-    assert min(errors, key=errors.__getitem__) == 20
-    for rows in ((-1, 5), (5, 5), (40, 46)):
-        with pytest.raises(SceneError, match="rows: expected 0 <= first < end <= 45"):
-            render_reference(ROOM, VIEW, SHAPE, spp=1, rows=rows)
-
-
-def test_a_reference_reports_its_progress() -> None:
-    seen: list[tuple[int, int]] = []
-    render_reference(ROOM, VIEW, (170, 200), spp=3, progress=lambda done, total: seen.append((done, total)))
-    assert seen == [(1, 3), (2, 3), (3, 3)]
-
-
-def test_a_sequence_runs_along_the_whole_path() -> None:
-    path = ROOM.camera_path
-    frames = list(render_sequence(ROOM, path, SHAPE, 3, seed=4))
+def test_a_sequence_is_its_frames(everything: Shot) -> None:
+    frames = list(render_sequence(everything, seed=4))
+    assert len(frames) == 5
     assert not frames[0].motion.any()
-    for index, previous in ((1, 0.0), (2, 0.5)):
-        alone = render_frame(ROOM, path.at(index / 2), path.at(previous), SHAPE, frame_index=index, seed=4)
-        for name, value in alone.present().items():
-            np.testing.assert_array_equal(getattr(frames[index], name), value)
+    for number in (1, 4):
+        for name, value in render_frame(everything, number, seed=4).present().items():
+            np.testing.assert_array_equal(getattr(frames[number], name), value)
 
 
-def test_a_sequence_of_one_frame_starts_the_path() -> None:
-    (frame,) = render_sequence(ROOM, CameraPath.static(VIEW), (1, 1), 1)
-    frame.check((1, 1))
-
-
-@pytest.mark.parametrize("wrong", [{"spp": 0}, {"bounces": -1}, {"seed": -1}, {"frame_index": -1}])
-def test_numbers_out_of_range_are_named(wrong: dict[str, int]) -> None:
+@pytest.mark.parametrize("wrong", [{"spp": 0}, {"bounces": -1}, {"seed": -1}, {"number": -1}])
+def test_numbers_out_of_range_are_named(everything: Shot, wrong: dict[str, int]) -> None:
     with pytest.raises(SceneError, match=next(iter(wrong))):
-        render_frame(ROOM, VIEW, None, SHAPE, **wrong)
-    with pytest.raises(SceneError, match="shape"):
-        render_reference(ROOM, VIEW, (0, 5), spp=1)
+        render_frame(everything, **({"number": 0} | wrong))
+
+
+def spot(quad: Quad, motion: Motion | None = None) -> Instance:
+    """A square light, 0.2 wide, 8 in front of the camera."""
+    return quad((-0.1, -0.1, -8), (0.2, 0, 0), (0, 0.2, 0), Material(BLACK, emission=WHITE), motion)
+
+
+def spread_of(color: NDArray[np.float32]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Mean place of a picture's light and its variance, (x, y) each, in pixels from the middle."""
+    light = color[..., 0].astype(np.float64) / color[..., 0].sum()
+    place = np.indices(light.shape)[::-1] - (light.shape[0] - 1) / 2
+    mean = (place * light).sum((1, 2))
+    return mean, (place**2 * light).sum((1, 2)) - mean**2
+
+
+@pytest.mark.parametrize("focus", [4.0, 16.0])
+def test_a_point_out_of_focus_becomes_the_disc_of_a_thin_lens(quad: Quad, focus: float) -> None:
+    camera = Camera((0, 0, 0), (0, 0, -focus), fov_y=15.0, aperture=0.5)
+    color = render_reference(Shot(Scene([spot(quad)]), (32, 32), camera_path=CameraPath.static(camera)), 0, spp=600)
+    scale = camera.lens((32, 32)).scale
+    mean, variance = spread_of(color)
+    diameter = 0.5 * abs(8 - focus) / (8 * focus) * scale
+    np.testing.assert_allclose(mean, 0.0, atol=0.1)
+    # A disc's variance, that of the light itself, and that of a pixel.
+    expected = diameter**2 / 16 + (0.2 / 8 * scale) ** 2 / 12 + 1 / 12
+    np.testing.assert_allclose(variance, expected, rtol=0.05, atol=0.1)
+
+
+def test_what_is_in_focus_is_as_sharp_as_through_a_pinhole(quad: Quad) -> None:
+    board = quad((-1, -1, -4), (2, 0, 0), (0, 2, 0), Material(BLACK, WHITE, emission_texture=CHECKS[..., [3, 3, 3]]))
+    sharp, through_lens = (
+        render_reference(
+            Shot(Scene([board]), (32, 32), camera_path=CameraPath.static(Camera((0, 0, 0), (0, 0, -4), aperture=a))),
+            0,
+            spp=8,
+        )
+        for a in (0.0, 0.5)
+    )
+    assert sharp.std() > 0.1
+    np.testing.assert_allclose(through_lens, sharp, atol=1e-3)
+
+
+@pytest.mark.parametrize("moving", ["light", "camera"])
+def test_what_moves_while_the_shutter_is_open_is_smeared_along_its_way(quad: Quad, moving: str) -> None:
+    """Half a frame long: from where it is at the frame's time to half the way to the next frame's."""
+    slide = Motion.sliding([0.0, 1.0], [(0, 0, 0), (1, 0, 0)]) if moving == "light" else None
+    end = (0.0, 0.0, 0.0) if moving == "light" else (-1.0, 0.0, 0.0)
+    path = [Camera(eye, (eye[0], 0, -8), fov_y=15.0, shutter=0.5) for eye in ((0.0, 0.0, 0.0), end)]
+    shot = Shot(Scene([spot(quad, slide)]), (32, 32), 2, CameraPath.through(path), fps=1.0)
+    scale = path[0].lens((32, 32)).scale / 8
+    mean, variance = spread_of(render_reference(shot, 0, spp=600))
+    np.testing.assert_allclose(mean, (0.25 * scale, 0.0), atol=0.1)
+    size = (0.2 * scale) ** 2 / 12 + 1 / 12
+    smear = (0.5 * scale) ** 2 / 12 * (1 - 1 / render.MOMENTS**2)
+    np.testing.assert_allclose(variance, (smear + size, size), rtol=0.05, atol=0.1)
+
+
+def test_an_open_shutter_changes_nothing_where_nothing_moves(lamp: Shot) -> None:
+    for shutter in (0.0, 0.9):
+        camera = Camera(AT_ORIGIN.position, AT_ORIGIN.look_at, fov_y=AT_ORIGIN.fov_y, shutter=shutter)
+        shot = Shot(lamp.scene, lamp.shape, 5, CameraPath.static(camera))
+        np.testing.assert_array_equal(render_frame(shot, 2).color, render_frame(lamp, 2).color)
+
+
+def test_lights_switch_and_move_in_the_right_frame(floor: Floor, quad: Quad) -> None:
+    switch = Track([0.0, 0.25, 0.5], [[1.0], [0.0], [2.0]], step=True)
+    above = quad((-1, 1.5, -0.4), (2, 0, 0), (0, 0, 0.8), Material(BLACK, WHITE, brightness=switch))
+    flash = Shot(Scene([floor(Material()), above]), (64, 64), 5, CameraPath.static(AT_ORIGIN), fps=8.0)
+    means = [frame.color.mean() for frame in render_sequence(flash)]
+    np.testing.assert_allclose(np.divide(means, means[0]), (1, 1, 0, 0, 2), rtol=0.02)
+    rising = PointLight((0, 1, 0), WHITE, motion=Motion.sliding([0.0, 0.5], [(0, 0, 0), (0, 2, 0)]))
+    lift = Shot(Scene([floor(Material())], lights=[rising]), (8, 8), 5, CameraPath.static(AT_ORIGIN), fps=8.0)
+    means = [frame.color.mean() for frame in render_sequence(lift)]
+    np.testing.assert_allclose(np.divide(means, means[0]), 1 / np.array((1, 1.5, 2, 2.5, 3)) ** 2, rtol=1e-3)
