@@ -6,7 +6,7 @@ from .errors import SceneError
 from .loading import load_scene
 from .panorama import load_environment
 from .references import Goal, References
-from .render import render_frame, render_reference, render_sequence
+from .render import render_frame, render_sequence
 from .scene import Scene
 from .scheduling import scheduled
 from .shot import Shot
@@ -26,7 +26,6 @@ __all__ = [
     "load_environment",
     "load_scene",
     "render_frame",
-    "render_reference",
     "render_sequence",
     "scheduled",
 ]

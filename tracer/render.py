@@ -1,4 +1,4 @@
-"""Images of a shot: frames as a renderer hands them to the denoiser, and the samples that references are made of."""
+"""Frames of a shot, as a renderer hands them to the denoiser, and the samples that they and references are made of."""
 
 from __future__ import annotations
 
@@ -105,121 +105,19 @@ def render_frame(
     return Frame(**{name: values.reshape(*shot.shape, *values.shape[1:]) for name, values in fields.items()})
 
 
-def render_reference(
-    shot: Shot,
-    number: int,
-    *,
-    spp: int,
-    seed: int = 0,
-    jitter: bool = True,
-    bounces: int = 1,
-    rows: tuple[int, int] | None = None,
-    progress: Callable[[int, int], None] | None = None,
-) -> Float32:
-    """Render what a frame converges to: the mean radiance over each pixel's square.
-
-    Parameters
-    ----------
-    shot, number, seed, bounces
-        As in `render_frame`. No noise is shared with a frame of the same seed.
-    spp : int
-        Samples per pixel, >= 1.
-    jitter : bool
-        False: what frames without jitter converge to, the radiance at each pixel's centre.
-    rows : (int, int), optional
-        First row and the one after the last, of those to render; all by default.
-    progress : callable, optional
-        Called with (samples done, `spp`) after each sample of the image.
-
-    Returns
-    -------
-    (H, W, 3) float32
-        Linear radiance; H counts the rendered rows.
-
-    Raises
-    ------
-    SceneError
-        A number is out of its range.
-    """
-    _check(spp=(spp, 1), number=(number, 0), seed=(seed, 0), bounces=(bounces, 0))
-    height, width = shot.shape[0] if rows is None else rows[1] - rows[0], shot.shape[1]
-    total = np.zeros((max(height, 0) * width, 3))
-    for tile in trace_samples(
-        shot, number, range(spp), stream=REFERENCE, seed=seed, jitter=jitter, bounces=bounces, rows=rows
-    ):
-        total[tile.pixels] += tile.radiance.color
-        if progress and tile.pixels.stop == len(total):
-            progress(tile.sample + 1, spp)
-    return (total / spp).astype(np.float32).reshape(height, width, 3)
-
-
-class Tile(NamedTuple):
-    """One sample of some neighbouring pixels, which count row by row from the first row traced.
-
-    `features` have room for no pixel unless they were asked for.
-    """
-
-    sample: int
-    pixels: slice
-    radiance: Radiance
-    features: Features
-
-
-def trace_samples(
-    shot: Shot,
-    number: int,
-    samples: Iterable[int],
-    *,
-    stream: int,
-    seed: int = 0,
-    jitter: bool = True,
-    bounces: int = 1,
-    rows: tuple[int, int] | None = None,
-    described: bool = False,
-) -> Iterator[Tile]:
-    """Trace samples of a frame's pixels, on all cores.
+class Sampler:
+    """Traces single samples of a frame's pixels.
 
     Parameters
     ----------
     shot, number, seed, bounces
         As in `render_frame`.
-    samples : iterable of int
-        Their numbers, >= 0. A sample is the same whoever traces it, and with whichever others.
     stream : int
         What they are for: `FRAME` or `REFERENCE`.
     jitter : bool
         Spread the samples over the pixel's square: the first of a frame by the frame's Halton offset, all others at
         random. Otherwise they go through the pixel's centre.
-    rows : (int, int), optional
-        First row and the one after the last, of those to trace; all by default.
-    described : bool
-        Give the G-buffer too.
-
-    Yields
-    ------
-    Tile
-        Sample after sample, each from the first pixel to the last, however many threads work.
     """
-    first, end = rows or (0, shot.shape[0])
-    if not 0 <= first < end <= shot.shape[0]:
-        raise SceneError(f"rows: expected 0 <= first < end <= {shot.shape[0]}, got {rows}")
-    sampler = Sampler(shot, number, stream=stream, seed=seed, jitter=jitter, bounces=bounces)
-    width = shot.shape[1]
-    start = first * width
-
-    def job(task: tuple[int, slice]) -> Tile:
-        sample, pixels = task
-        count = pixels.stop - pixels.start
-        radiance, features = Radiance.empty(count), Features.empty(count if described else 0)
-        light = sampler.trace(slice(start + pixels.start, start + pixels.stop), sample, features)
-        sum_up(light, 1, radiance)
-        return Tile(sample, pixels, radiance, features)
-
-    yield from in_threads(job, ((sample, pixels) for sample in samples for pixels in tiles((end - first) * width)))
-
-
-class Sampler:
-    """Traces single samples of a frame's pixels; parameters are those of `trace_samples`."""
 
     def __init__(self, shot: Shot, number: int, *, stream: int, seed: int, jitter: bool, bounces: int) -> None:
         self._exposures = _exposures(shot, number)
@@ -228,7 +126,10 @@ class Sampler:
         self._offset = pixel_jitter(number) if stream == FRAME else None
 
     def trace(self, pixels: slice, sample: int, features: Features = NO_FEATURES) -> Float32:
-        """Light (N, 5, 3) of one sample of neighbouring pixels, which count row by row, and `features` if wanted."""
+        """Light (N, 5, 3) of one sample of neighbouring pixels, which count row by row, and `features` if wanted.
+
+        A sample, by its number >= 0, is the same whoever traces it, and with whichever others.
+        """
         draws = Draws(self._key, sample, np.arange(pixels.start, pixels.stop))
         positions = self._positions(draws)
         if len(self._exposures) == 1:

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from tests.tracer.estimates import AT_ORIGIN, assert_mean, still, under_rectangle
-from tracer import Camera, CameraPath, Shot, load_scene, render_reference
+from tracer import Camera, CameraPath, Shot, load_scene, render_frame
 from tracer.geometry import Instance
 from tracer.lights import PointLight, Sun
 from tracer.materials import Material
@@ -321,7 +321,7 @@ def test_the_cornell_box_matches_another_renderer() -> None:
     expected = np.load(CORNELL / "reference_tungsten_256.npy").astype(np.float32)
     camera = Camera((0, 1.0, 6.8), (0, 1.0, 5.8), fov_y=19.5)
     shot = Shot(load_scene(CORNELL / "cornell_box.glb"), (64, 64), camera_path=CameraPath.static(camera))
-    color = render_reference(shot, 0, spp=128, bounces=16)
+    color = render_frame(shot, 0, spp=128, bounces=16).color
     np.testing.assert_allclose(color.mean((0, 1)), expected.mean((0, 1)), rtol=0.01)
     blocks = color.reshape(16, 4, 16, 4, 3).mean((1, 3)) / expected.reshape(16, 16, 16, 16, 3).mean((1, 3))
     assert np.median(blocks) == pytest.approx(1.0, abs=0.01)

@@ -12,13 +12,13 @@ import trimesh
 from numpy.typing import NDArray
 
 from tests.tracer.estimates import AT_ORIGIN
-from tracer import CameraPath, Scene, SceneError, Shot, render, render_frame, render_reference, render_sequence
+from tracer import CameraPath, Scene, SceneError, Shot, render, render_frame, render_sequence
 from tracer.camera import Camera
 from tracer.geometry import Instance
 from tracer.lights import PointLight, Sun
 from tracer.materials import Material
 from tracer.motion import Motion, Track
-from tracer.render import FRAME, REFERENCE, trace_samples
+from tracer.render import FRAME, REFERENCE, Features, Sampler
 from tracer.sampling import pixel_jitter
 from tracer.sky import Environment
 from tracer.textures import LINEAR
@@ -61,6 +61,10 @@ def lamp(floor: Floor, quad: Quad) -> Shot:
     return Shot(scene, (128, 128), 5, CameraPath.static(AT_ORIGIN))
 
 
+def sampler_of(shot: Shot, number: int, stream: int, *, seed: int = 0, jitter: bool = True) -> Sampler:
+    return Sampler(shot, number, stream=stream, seed=seed, jitter=jitter, bounces=1)
+
+
 @pytest.mark.parametrize("spp", [1, 3])
 def test_a_frame_is_whole(everything: Shot, spp: int) -> None:
     frame = render_frame(everything, 1, spp=spp)
@@ -82,51 +86,43 @@ def test_both_ways_of_splitting_light_add_up(everything: Shot, spp: int) -> None
     np.testing.assert_allclose(frame.color, frame.diffuse + frame.specular + frame.emission, rtol=1e-5)
 
 
-def images(shot: Shot) -> list[NDArray[np.float32]]:
-    frame = render_frame(shot, 2, spp=2, seed=9)
-    tiles = trace_samples(shot, 2, range(3), stream=REFERENCE, seed=9, bounces=2)
-    return [*frame.present().values(), np.concatenate([tile.radiance.color for tile in tiles])]
-
-
 def test_an_image_hangs_neither_on_the_number_of_threads_nor_on_its_tiles(
     everything: Shot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    alone = images(everything)
+    def images() -> list[NDArray[np.float32]]:
+        return list(render_frame(everything, 2, spp=2, seed=9).present().values())
+
+    alone = images()
     for threads, tile in ((1, 1 << 14), (5, 100), (2, 7)):
         monkeypatch.setattr(os, "cpu_count", lambda threads=threads: threads)
         monkeypatch.setattr(render, "TILE", tile)
-        for one, many in zip(alone, images(everything), strict=True):
+        for one, many in zip(alone, images(), strict=True):
             np.testing.assert_array_equal(one, many)
 
 
 def test_a_sample_is_the_same_whichever_others_are_traced(everything: Shot) -> None:
-    def sample(*numbers: int, rows: tuple[int, int] | None = None) -> dict[int, NDArray[np.float32]]:
-        tiles = trace_samples(everything, 1, numbers, stream=REFERENCE, rows=rows, described=True)
-        return {tile.sample: np.concatenate([tile.radiance.color, tile.features.motion], axis=1) for tile in tiles}
+    def sample(number: int, pixels: slice) -> NDArray[np.float32]:
+        features = Features.empty(pixels.stop - pixels.start)
+        light = sampler.trace(pixels, number, features)
+        return np.concatenate([light.reshape(len(light), -1), features.motion], axis=1)
 
-    together = sample(0, 1, 2, 3)
-    backwards = sample(3, 1)
-    assert list(backwards) == [3, 1]
-    for number, values in backwards.items():
-        np.testing.assert_array_equal(values, together[number])
-    rows = sample(2, rows=(7, 11))[2].reshape(4, SHAPE[1], -1)
-    np.testing.assert_array_equal(rows, together[2].reshape(*SHAPE, -1)[7:11])
-
-
-@pytest.mark.parametrize("rows", [(-1, 5), (5, 5), (6, 5), (20, 25)])
-def test_rows_out_of_the_image_are_named(everything: Shot, rows: tuple[int, int]) -> None:
-    with pytest.raises(SceneError, match="rows: expected 0 <= first < end <= 24"):
-        list(trace_samples(everything, 0, [0], stream=FRAME, rows=rows))
+    sampler, whole = sampler_of(everything, 1, REFERENCE), slice(0, SHAPE[0] * SHAPE[1])
+    together = [sample(number, whole) for number in range(4)]
+    sampler = sampler_of(everything, 1, REFERENCE)
+    for number in (3, 1):
+        np.testing.assert_array_equal(sample(number, whole), together[number])
+    np.testing.assert_array_equal(sample(2, slice(200, 333)), together[2][200:333])
 
 
 def test_frames_samples_and_references_share_no_noise(lamp: Shot) -> None:
     def noise(stream: int, seed: int, number: int, sample: int) -> NDArray[np.float32]:
-        tiles = trace_samples(lamp, number, [sample], stream=stream, seed=seed, jitter=False)
-        return np.concatenate([tile.radiance.color[:, 0] for tile in tiles])
+        sampler = sampler_of(lamp, number, stream, seed=seed, jitter=False)
+        color: NDArray[np.float32] = sampler.trace(slice(0, lamp.shape[0] * lamp.shape[1]), sample).sum(1)
+        return color[:, 0]
 
     first = noise(FRAME, 0, 0, 0)
     np.testing.assert_array_equal(first, noise(FRAME, 0, 0, 0))
-    np.testing.assert_array_equal(first, render_frame(lamp, 0, jitter=False).color[..., 0].ravel())
+    np.testing.assert_allclose(first, render_frame(lamp, 0, jitter=False).color[..., 0].ravel(), rtol=1e-6)
     others = [
         noise(*key)
         for key in (
@@ -160,8 +156,8 @@ def test_the_first_sample_lies_at_the_frames_offset_and_further_ones_anywhere_in
 
     def place(*samples: int, jitter: bool = True) -> NDArray[np.float64]:
         """The column that each sample of each pixel shows."""
-        tiles = trace_samples(shot, 2, samples, stream=FRAME, jitter=jitter)
-        color = np.array([tile.radiance.color[:, 0] for tile in tiles])
+        sampler = sampler_of(shot, 2, FRAME, jitter=jitter)
+        color = np.array([sampler.trace(slice(0, 64), sample).sum(1)[:, 0] for sample in samples])
         return np.interp(color, LINEAR, np.arange(256)) * 8 / 256 / 4 * shot.camera(0).lens((8, 8)).scale
 
     centre = place(0, jitter=False)
@@ -169,16 +165,6 @@ def test_the_first_sample_lies_at_the_frames_offset_and_further_ones_anywhere_in
     offset = place(*range(1, 65)) - centre
     np.testing.assert_allclose([offset.min(), offset.max()], (-0.5, 0.5), atol=0.01)
     assert offset.std() == pytest.approx(1 / math.sqrt(12), rel=0.03)
-
-
-def test_a_reference_is_what_frames_converge_to(everything: Shot) -> None:
-    reference = render_reference(everything, 1, spp=64)
-    frame = render_frame(everything, 1, spp=64).color
-    assert reference.dtype == np.float32
-    assert reference.shape == (*SHAPE, 3)
-    np.testing.assert_allclose(reference.mean((0, 1)), frame.mean((0, 1)), rtol=0.02)
-    single = render_frame(everything, 1, jitter=False).color
-    assert not np.array_equal(single, render_reference(everything, 1, spp=1, jitter=False))
 
 
 def test_a_sequence_is_its_frames(everything: Shot) -> None:
@@ -212,7 +198,8 @@ def spread_of(color: NDArray[np.float32]) -> tuple[NDArray[np.float64], NDArray[
 @pytest.mark.parametrize("focus", [4.0, 16.0])
 def test_a_point_out_of_focus_becomes_the_disc_of_a_thin_lens(quad: Quad, focus: float) -> None:
     camera = Camera((0, 0, 0), (0, 0, -focus), fov_y=15.0, aperture=0.5)
-    color = render_reference(Shot(Scene([spot(quad)]), (32, 32), camera_path=CameraPath.static(camera)), 0, spp=600)
+    shot = Shot(Scene([spot(quad)]), (32, 32), camera_path=CameraPath.static(camera))
+    color = render_frame(shot, 0, spp=600).color
     scale = camera.lens((32, 32)).scale
     mean, variance = spread_of(color)
     diameter = 0.5 * abs(8 - focus) / (8 * focus) * scale
@@ -225,11 +212,11 @@ def test_a_point_out_of_focus_becomes_the_disc_of_a_thin_lens(quad: Quad, focus:
 def test_what_is_in_focus_is_as_sharp_as_through_a_pinhole(quad: Quad) -> None:
     board = quad((-1, -1, -4), (2, 0, 0), (0, 2, 0), Material(BLACK, WHITE, emission_texture=CHECKS[..., [3, 3, 3]]))
     sharp, through_lens = (
-        render_reference(
+        render_frame(
             Shot(Scene([board]), (32, 32), camera_path=CameraPath.static(Camera((0, 0, 0), (0, 0, -4), aperture=a))),
             0,
             spp=8,
-        )
+        ).color
         for a in (0.0, 0.5)
     )
     assert sharp.std() > 0.1
@@ -244,7 +231,7 @@ def test_what_moves_while_the_shutter_is_open_is_smeared_along_its_way(quad: Qua
     path = [Camera(eye, (eye[0], 0, -8), fov_y=15.0, shutter=0.5) for eye in ((0.0, 0.0, 0.0), end)]
     shot = Shot(Scene([spot(quad, slide)]), (32, 32), 2, CameraPath.through(path), fps=1.0)
     scale = path[0].lens((32, 32)).scale / 8
-    mean, variance = spread_of(render_reference(shot, 0, spp=600))
+    mean, variance = spread_of(render_frame(shot, 0, spp=600).color)
     np.testing.assert_allclose(mean, (0.25 * scale, 0.0), atol=0.1)
     size = (0.2 * scale) ** 2 / 12 + 1 / 12
     smear = (0.5 * scale) ** 2 / 12 * (1 - 1 / render.MOMENTS**2)
