@@ -30,6 +30,7 @@ SKY_HELP = (
     "directions. In place of the scene's own sky."
 )
 SCENE_HELP = "A folder with a scene.json; a glTF, GLB or OBJ file; or a built-in scene, which svgf-cl scenes lists."
+FRAMES_HELP = "Number of frames. By default 24, or as many as show what a built-in scene is made for."
 ALTERNATIVE_HELP = "Light the scene by the alternative_lights of its scene.json."
 REFERENCE_HELP = "Also write a reference of each frame, of at least so many samples per pixel; 0: none."
 ERROR_HELP = (
@@ -42,7 +43,7 @@ SCHEDULER_HELP = "Render on the workers of the Dask scheduler there, for example
 def render(
     scene: Annotated[str, typer.Argument(metavar="SCENE", help=SCENE_HELP)],
     output: Output,
-    frames: Annotated[int, typer.Option(metavar="N", min=1, help="Number of frames.")] = 24,
+    frames: Annotated[int | None, typer.Option(metavar="N", min=1, help=FRAMES_HELP)] = None,
     spp: Annotated[int, typer.Option(metavar="N", min=1, help="Samples per pixel of a frame.")] = 1,
     size: Size = "640x360",
     camera: Annotated[list[str], typer.Option(metavar="TEXT", help=CAMERA_HELP)] = [],  # noqa: B006
@@ -70,8 +71,9 @@ def render(
       svgf-cl render cornell --frames 4 --until-error 0.02 --scheduler tcp://10.0.0.7:8786 -o out/box
     """
     require_tracer()
-    from tracer import Camera, CameraPath, Goal, References, Shot, render_frame, scheduled
+    from tracer import BUILTIN, Camera, CameraPath, Goal, References, Shot, render_frame, scheduled
 
+    frames = frames or (BUILTIN[scene].frames if scene in BUILTIN else 24)
     shape = parse_size(size)
     cameras = [Camera.parse(text) for text in camera]
     world = open_scene(scene, read_sky(sky) if sky else None, alternative_lights=alternative_lights)
