@@ -110,13 +110,14 @@ def cofactors(matrix: NDArray[np.floating]) -> Float64:
 class Surface(NamedTuple):
     """A point where a ray met the scene; both normals look to the side the ray came from.
 
-    `point` is on the triangle, `u` and `v` are texture coordinates; `front` tells whether the ray met the side from
-    which the corners run counter-clockwise.
+    `point` is on the triangle, `lift` is how far from it a ray is sure to have left it, `u` and `v` are texture
+    coordinates; `front` tells whether the ray met the side from which the corners run counter-clockwise.
     """
 
     point: Vec3
     face_normal: Vec3
     normal: Vec3
+    lift: float
     u: float
     v: float
     material: int
@@ -140,7 +141,20 @@ def surface_at(triangles: Triangles, triangle: int, b: float, c: float, directio
         normal = face_normal
     u, v = texture_coordinates(triangles, triangle, b, c)
     point = interpolated(corners, triangle, b, c)
-    return Surface(point, face_normal, normal, u, v, triangles.material[triangle], front)
+    return Surface(point, face_normal, normal, lift(corners, triangle), u, v, triangles.material[triangle], front)
+
+
+@compiled
+def lift(corners: Float32, triangle: int) -> float:
+    """How far from a point on a triangle a ray is sure to have left it.
+
+    Such a point carries an error of a few units in the last place of the largest coordinate, about 1e-7 of it.
+    """
+    largest = 0.0
+    for corner in range(3):
+        for axis in range(3):
+            largest = max(largest, abs(corners[triangle, corner, axis]))
+    return 1e-5 * largest
 
 
 @compiled

@@ -25,7 +25,6 @@ class Tables(NamedTuple):
     materials: Materials
     lights: Lights
     sky: SkyTable
-    lift: float
 
 
 class Moment(NamedTuple):
@@ -82,18 +81,17 @@ class Scene:
         """The scene at `time` in seconds."""
         if self._still is not None:
             return self._still
-        triangles, lift = self._triangles, self._lift
+        triangles = self._triangles
         trees = list(self._trees)
         if self._moving:
             triangles = joined(triangles, self._gather(self._moving, time))
             trees += self._grow(self._moving, triangles, len(self._triangles.corners))
-            lift = max(lift, _lift(self._moving, time))
         materials = self._materials._replace(
             emission=np.array([np.multiply(m.emission, m.brightness_at(time)) for m in self._kinds])
         )
         lights = Lights.of(triangles, self._kinds, self.lights, self._sky, time)
-        tables = Tables(triangles, materials, lights, self._sky, lift)
-        return Moment(tables, Trees(trees, triangles, materials, lift))
+        tables = Tables(triangles, materials, lights, self._sky)
+        return Moment(tables, Trees(trees, triangles, materials))
 
     def corners_at(self, time: float) -> Float32:
         """First corner and edges (T, 3, 3) of the triangles at `time` in seconds, in the order of `at`."""
@@ -117,15 +115,14 @@ class Scene:
         self._moving = [instance for instance in ordered if instance.motion is not None]
         self._materials = Materials.of(self._kinds)
         self._sky = sky_table(self.sky)
-        self._lift = _lift(still, 0.0)
         self._triangles = self._gather(still, 0.0)
         self._trees = self._grow(still, self._triangles, 0)
         self._still: Moment | None = None
         lights_change = any(isinstance(light, PointLight) and light.motion is not None for light in self.lights)
         if not (self._moving or lights_change or any(m.brightness is not None for m in self._kinds)):
             lights = Lights.of(self._triangles, self._kinds, self.lights, self._sky, 0.0)
-            tables = Tables(self._triangles, self._materials, lights, self._sky, self._lift)
-            self._still = Moment(tables, Trees(self._trees, self._triangles, self._materials, self._lift))
+            tables = Tables(self._triangles, self._materials, lights, self._sky)
+            self._still = Moment(tables, Trees(self._trees, self._triangles, self._materials))
 
     def _gather(self, instances: Sequence[Instance], time: float) -> Triangles:
         ids = [self._id[id(instance)] for instance in instances]
@@ -158,14 +155,6 @@ def _make(
     camera_path: CameraPath,
 ) -> Scene:
     return Scene(instances, lights=lights, sky=sky, camera_path=camera_path)
-
-
-def _lift(instances: Sequence[Instance], time: float) -> float:
-    """How far beyond a point on one of `instances` a ray is sure to have left it.
-
-    Positions carry an error of a few units in the last place of the largest coordinate, about 1e-7 of it.
-    """
-    return 1e-5 * max((float(np.abs(instance.corners_at(time)).max()) for instance in instances), default=0.0)
 
 
 def _check(instances: Sequence[Instance]) -> None:

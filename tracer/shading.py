@@ -190,7 +190,7 @@ def shade(
         if len(tables.lights.kinds):
             to_light = random4(draws.key, draws.pixels[pixel], draws.sample, draw + 1)
             shadow_count = _aim(tables, vertex, to_light, depth, lobe, pixel, shadows, shadow_count)
-        ahead_count = _scatter(vertex, u, tables.lift, paths, index, depth, ahead, ahead_count)
+        ahead_count = _scatter(vertex, u, paths, index, depth, ahead, ahead_count)
     return shadow_count, ahead_count
 
 
@@ -207,7 +207,7 @@ def _aim(
 ) -> int:
     """Send a ray from the surface to a light, unless that cannot shine on it; returns the new count of such rays."""
     surface, r, share, outgoing, throughput = vertex
-    origin = add(surface.point, scale(surface.face_normal, tables.lift))
+    origin = _lifted(surface, 1.0)
     sample = sample_light(tables.lights, tables.triangles, tables.materials, tables.sky, origin, u)
     cosine = dot(sample.direction, surface.normal)
     shines = max(sample.light[0], sample.light[1], sample.light[2]) > 0.0
@@ -232,15 +232,13 @@ def _aim(
         shadows.light[count, DIFFUSE, channel] = light[channel] * diffuse[channel]
         shadows.light[count, SPECULAR, channel] = light[channel] * specular[channel]
     # End in front of the lamp, as far as rays start in front of a surface.
-    shadows.distance[count] = min(sample.distance * (1.0 - 1e-4) - tables.lift, FAR)
+    shadows.distance[count] = min(sample.distance * (1.0 - 1e-4) - surface.lift, FAR)
     shadows.pixel[count] = pixel
     return count + 1
 
 
 @compiled
-def _scatter(
-    vertex: Vertex, u: Random4, lift: float, paths: Paths, index: int, depth: int, ahead: Paths, count: int
-) -> int:
+def _scatter(vertex: Vertex, u: Random4, paths: Paths, index: int, depth: int, ahead: Paths, count: int) -> int:
     """Draw a direction from one lobe and go on along it, unless it brings nothing; returns the new count of paths."""
     surface, r, share, outgoing, throughput = vertex
     if u[0] < share:
@@ -259,7 +257,7 @@ def _scatter(
     throughput = multiply(throughput, scale(reflected, 1.0 / density))
     if max(throughput[0], throughput[1], throughput[2]) <= 0.0:
         return count
-    _put(ahead, count, add(surface.point, scale(surface.face_normal, lift)), onward, throughput, density)
+    _put(ahead, count, _lifted(surface, 1.0), onward, throughput, density)
     ahead.pixel[count] = paths.pixel[index]
     ahead.lobe[count] = lobe if depth == 0 else paths.lobe[index]
     ahead.scatterings[count] = paths.scatterings[index] - 1
@@ -283,19 +281,25 @@ def _pass_glass(
     ior = tables.materials.ior[surface.material]
     eta = ior if surface.front else 1.0 / ior
     wo = to_local(outgoing, surface.normal)
-    wi, lift = (-wo[0], -wo[1], wo[2]), tables.lift
+    wi, side = (-wo[0], -wo[1], wo[2]), 1.0
     if u[0] >= fresnel_dielectric(wo[2], eta):
-        wi, lift = refract(wo, eta)[0], -tables.lift
+        wi, side = refract(wo, eta)[0], -1.0
         if surface.front:  # the colour counts once for the way in and out
             throughput = multiply(throughput, colour)
     onward = to_world(wi, surface.normal)
-    if dot(onward, surface.face_normal) * lift <= 0.0:
+    if dot(onward, surface.face_normal) * side <= 0.0:
         return count
-    _put(ahead, count, add(surface.point, scale(surface.face_normal, lift)), onward, throughput, 0.0)
+    _put(ahead, count, _lifted(surface, side), onward, throughput, 0.0)
     ahead.pixel[count] = paths.pixel[index]
     ahead.lobe[count] = SPECULAR if depth == 0 else paths.lobe[index]
     ahead.scatterings[count] = paths.scatterings[index]
     return count + 1
+
+
+@compiled
+def _lifted(surface: Surface, side: float) -> Vec3:
+    """Where a ray starts that leaves the surface: on the side its normals look to (1), or on the other (-1)."""
+    return add(surface.point, scale(surface.face_normal, side * surface.lift))
 
 
 @compiled

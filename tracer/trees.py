@@ -11,7 +11,7 @@ from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
 from .compiled import compiled
-from .geometry import Triangles, texture_coordinates
+from .geometry import Triangles, lift, texture_coordinates
 from .materials import Materials, is_solid
 from .vectors import Float32
 
@@ -74,12 +74,10 @@ class Trees:
     triangles : Triangles
     materials : Materials
         They tell where a masked surface is solid.
-    lift : float
-        How far beyond a point, in scene units, a ray is sure to have left it.
     """
 
-    def __init__(self, trees: Sequence[Tree], triangles: Triangles, materials: Materials, lift: float) -> None:
-        self.trees, self.triangles, self.materials, self.lift = tuple(trees), triangles, materials, lift
+    def __init__(self, trees: Sequence[Tree], triangles: Triangles, materials: Materials) -> None:
+        self.trees, self.triangles, self.materials = tuple(trees), triangles, materials
 
     def intersect(self, origin: Float32, direction: Float32) -> Hits:
         """The first solid point on each ray from `origin` (N, 3) along the unit vectors `direction` (N, 3)."""
@@ -118,9 +116,9 @@ class Trees:
         travelled = np.zeros(len(origin), np.float32)
         while len(ray):
             found = tree.nearest(origin, direction, hits.distance[ray] - travelled)
-            passed = np.empty(len(ray), np.int32)
-            passed = passed[: _settle(self.triangles, self.materials, found, tree.first, ray, travelled, hits, passed)]
-            step = found.distance[passed] + np.float32(self.lift)
+            passed, step = np.empty(len(ray), np.int32), np.empty(len(ray), np.float32)
+            count = _settle(self.triangles, self.materials, found, tree.first, ray, travelled, hits, passed, step)
+            passed, step = passed[:count], step[:count]
             ray, travelled = ray[passed], travelled[passed] + step
             direction = direction[passed]
             origin = origin[passed] + step[:, None] * direction
@@ -136,8 +134,12 @@ def _settle(
     travelled: Float32,
     hits: Hits,
     passed: NDArray[np.int32],
+    step: Float32,
 ) -> int:
-    """Put solid points into `hits`; the rays that have met a point that is none are put into `passed`, and counted."""
+    """Put solid points into `hits`; the rays that have met a point that is none are put into `passed`, and counted.
+
+    `step` is how far each of those goes on to have left that point.
+    """
     count = 0
     for index in range(len(ray)):
         if found.triangle[index] == MISS:
@@ -151,7 +153,7 @@ def _settle(
             hits.b[target], hits.c[target] = b, c
             hits.distance[target] = travelled[index] + found.distance[index]
         else:
-            passed[count] = index
+            passed[count], step[count] = index, found.distance[index] + lift(triangles.corners, triangle)
             count += 1
     return count
 

@@ -266,3 +266,15 @@ def test_a_body_far_from_the_origin_looks_the_same(place: float) -> None:
     camera = Camera(tuple(offset + np.array((0, 0, 5))), tuple(offset), fov_y=15.0)
     color = still(Scene([ball], sky=WHITE), camera, (64, 64), bounces=3).color
     np.testing.assert_allclose(color, 1.0, rtol=1e-4)
+
+
+def test_a_speck_far_away_changes_nothing(floor: Floor) -> None:
+    """How far rays are lifted off a surface hangs on that surface, not on all that the scene holds."""
+    ball = Instance(trimesh.creation.icosphere(3, 0.5).triangles + np.array((0, 0.5, 0)), Material())
+    speck = Instance(trimesh.creation.icosphere(0).triangles + 1e5, Material(BLACK))
+    camera = Camera((0, 1, 3), (0, 0.4, 0))
+    alone, beside = (
+        still(Scene([floor(Material()), ball, *more], lights=[Sun((1, 1, 0), WHITE)], sky=WHITE), camera, (64, 64))
+        for more in ([], [speck])
+    )
+    np.testing.assert_array_equal(beside.color, alone.color)

@@ -7,7 +7,7 @@ import pytest
 import trimesh
 from numpy.typing import NDArray
 
-from tracer.geometry import Instance
+from tracer.geometry import Instance, lift
 from tracer.materials import Material, Materials, is_solid
 from tracer.motion import Motion
 from tracer.scene import Scene
@@ -156,13 +156,14 @@ def test_rays_that_leave_a_surface_do_not_find_it_again(place: float, motion: Mo
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     corners = found.triangles.corners.astype(np.float64)
     middle = corners[:, 0] + (corners[:, 1] + corners[:, 2]) / 3
-    above = (middle + found.lift * normal).astype(np.float32)
+    lifted = [lift(found.triangles.corners, number) for number in range(len(middle))]
+    above = (middle + np.array(lifted)[:, None] * normal).astype(np.float32)
     assert not found.occluded(above, normal, reach(len(above))).any()
     assert found.occluded(above, -normal, reach(len(above))).all()
 
 
 def test_a_ray_on_its_way_from_a_moved_body_does_not_find_it_again() -> None:
-    """How far rays must be lifted hangs on where the body is now."""
+    """How far a ray must step to leave it hangs on where the body is now."""
     far = Motion.sliding([0.0, 1.0], [(0, 0, 0), (5000, 3000, 1000)])
     ball = Instance(trimesh.creation.icosphere(3, 1.0).triangles, INVISIBLE, motion=far)
     found = trees([ball, Instance(ball.corners, Material())], 1.0)
