@@ -155,19 +155,22 @@ def shade(
                 elif depth == 1:
                     features.hit_distance[pixel, lobe] = np.inf
             continue
-        b, c = np.float64(hits.b[index]), np.float64(hits.c[index])
-        surface = surface_at(tables.triangles, triangle, b, c, direction)
-        material = surface.material
-        if surface.front or tables.materials.two_sided[material]:
-            shine = emitted_radiance(tables.materials, material, surface.u, surface.v)
-            if max(shine[0], shine[1], shine[2]) > 0.0:
-                cosine = abs(dot(surface.face_normal, direction))
-                weight = mis_weight(density, lamp_density(tables.lights, material, cosine, hits.distance[index]))
-                _add(light, pixel, kind, multiply(throughput, scale(shine, weight)))
         if depth == 1 and len(features.depth):
             features.hit_distance[pixel, lobe] = hits.distance[index]
+        material = tables.triangles.material[triangle]
         glass = tables.materials.transmissive[material]
-        if paths.scatterings[index] == 0 and not glass:
+        ends = paths.scatterings[index] == 0 and not glass
+        shines = tables.lights.lamp_density[material] > 0.0
+        if ends and not shines:
+            continue
+        b, c = np.float64(hits.b[index]), np.float64(hits.c[index])
+        surface = surface_at(tables.triangles, triangle, b, c, direction)
+        if shines and (surface.front or tables.materials.two_sided[material]):
+            shine = emitted_radiance(tables.materials, material, surface.u, surface.v)
+            cosine = abs(dot(surface.face_normal, direction))
+            weight = mis_weight(density, lamp_density(tables.lights, material, cosine, hits.distance[index]))
+            _add(light, pixel, kind, multiply(throughput, scale(shine, weight)))
+        if ends:
             continue
         base = base_colour(tables.materials, material, surface.u, surface.v)
         outgoing = scale(direction, -1.0)
