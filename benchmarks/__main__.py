@@ -1,4 +1,7 @@
-"""Everything that ``make bench`` measures, in one report: the suite, the race against OIDN, and speed against error."""
+"""Everything that ``make bench`` measures, in one report.
+
+The suite, the race against OIDN, the tracer against raw Embree, and speed against error.
+"""
 
 from __future__ import annotations
 
@@ -19,6 +22,8 @@ from svgf_cl.bench.cases import USUAL_SHAPE
 from svgf_cl.bench.report import Section
 from svgf_cl.bench.results import Result, Run
 from svgf_cl.bench.suite import Suite
+from svgf_cl.bench.tracing import picture
+from svgf_cl.bench.tracing import suite as tracing
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.errors import SvgfError
 from svgf_cl.files import make_folder
@@ -26,6 +31,7 @@ from svgf_cl.metrics import require_flip
 
 RACE_ROUNDS = 20
 VARIANT_ROUNDS = 10  # half as many as by itself: all has to be done in ten minutes
+TRACED, TRACER_ROUNDS = "cornell", 5
 
 
 def everything(
@@ -39,13 +45,20 @@ def everything(
     folder = make_folder(output)
     times, race = raced()  # first, for it tells OIDN's memory from what the process grows by
     suite = Suite(re.compile("")).run(progress_bar)
-    run = replace(suite, results=(*suite.results, *times))
-    write(run, folder, [race])
+    traced = tracing.measure(TRACED, USUAL_SHAPE, TRACER_ROUNDS, progress_bar)
+    run = replace(suite, results=(*suite.results, *times, *traced))
+    sections = [race, picture.section(traced)]
+    write(run, folder, sections)
     findings = speed_against_error.found(FOOTAGE, VARIANT_ROUNDS)
     findings.write(make_folder(folder / "speed-against-error"))
-    write(run, folder, [race, findings.section])
+    sections.append(findings.section)
+    write(run, folder, sections)
     shown = [tables.stage_table(run, device) for device in run.devices]
-    for table in (*shown, *race.tables, *findings.tables, bars.bar_table(run.results, run.platforms)):
+    for table in (
+        *shown,
+        *(table for section in sections for table in section.tables),
+        bars.bar_table(run.results, run.platforms),
+    ):
         show(table.title, table.columns, table.rows)
     print(f"{folder}: report.html, summary.png, results.json, speed-against-error")
 

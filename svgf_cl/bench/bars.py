@@ -1,4 +1,4 @@
-"""The bars that the filter is held to, and what a run says of each."""
+"""The bars that filter and tracer are held to, and what a run says of each."""
 
 from __future__ import annotations
 
@@ -118,6 +118,17 @@ def enqueue(results: Results) -> float:
     return 1e3 * find(results, stage="enqueue", clock=HOST, **USUAL).median
 
 
+def over_embree(results: Results) -> float:
+    """Median over the rounds: how many times as long the tracer took for a frame as raw Embree for the same rays."""
+    frame, rays = (find(results, stage=f"tracer {what}", clock=HOST, **USUAL) for what in ("frame", "embree"))
+    return float(np.median(np.divide(frame.seconds, rays.seconds)))
+
+
+def tracer_memory(results: Results) -> float:
+    """GB that a new process held at most."""
+    return float(find(results, stage="tracer start load", width=1920, height=1080).facts["peak"]) / 1e9
+
+
 def race_bars(settings: str) -> Iterator[Bar]:
     """How much faster than Open Image Denoise these settings have to be; the last one is an aim."""
     for kind, rival, factor in (("bar", "high", 15.0), ("bar", "fast", 8.0), ("aim", "fast", 15.0)):
@@ -137,6 +148,8 @@ BARS = (
     Bar("host's time to enqueue a frame", 0.3, " ms", enqueue),
     Bar("start to first frame, cold caches", 10, " s", start("cold")),
     Bar("start to first frame, warm caches", 1, " s", start("warm")),
+    Bar("the tracer's frame over raw Embree's time for its rays", 1.8, " times", over_embree),
+    Bar("the tracer's memory with a frame of 1920x1080", 3, " GB", tracer_memory),
 )
 
 

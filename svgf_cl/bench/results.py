@@ -73,9 +73,9 @@ class Result:
     name : str
         Such as ``svgf.atrous.3.1280x720``.
     device : str
-        `DeviceRecord.selector`.
+        `DeviceRecord.selector`, or what else ran.
     clock : str
-        "event": the device's, from OpenCL events; "host": the caller's.
+        "event": the device's, from OpenCL events; "host": the caller's; "cpu": what all threads spend together.
     seconds : tuple of float
     facts : dict
         What was timed (stage, width, height, signals, iterations, cores) and, by the device's clock, how near it came
@@ -158,8 +158,9 @@ class Run:
 
     @property
     def platforms(self) -> dict[str, str]:
-        """OpenCL implementations by their devices' selectors."""
-        return {device.selector: device.platform for device in self.devices}
+        """What ran, by `Result.device`: OpenCL implementations; all else is its own."""
+        known = {device.selector: device.platform for device in self.devices}
+        return known | {result.device: result.device for result in self.results if result.device not in known}
 
     def of(self, device: DeviceRecord, **facts: Any) -> Iterator[Result]:
         """The results on a device whose clock or facts are as given, in order."""

@@ -27,10 +27,10 @@ for command in (
     render.render,
     denoise.denoise,
     compare.compare,
-    bench.bench,
     tune.tune,
 ):
     app.command()(command)
+app.add_typer(bench.app, name="bench")
 
 
 @app.callback()

@@ -8,13 +8,20 @@ from typing import Annotated
 
 import typer
 
+from svgf_cl.cli import bench_tracer
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import SettingTexts, parse_settings, parse_size
 from svgf_cl.errors import SvgfError
 from svgf_cl.files import make_folder
 
+# Plain help, as in `svgf_cl.cli`.
+app = typer.Typer(rich_markup_mode=None, add_completion=False)
+app.command()(bench_tracer.tracer)
 
+
+@app.callback(invoke_without_command=True)
 def bench(
+    context: typer.Context,
     filter_: Annotated[
         str, typer.Option("--filter", metavar="REGEX", help="Only benchmarks whose name it is found in.")
     ] = "",
@@ -46,6 +53,9 @@ def bench(
       svgf-cl bench --output out/bench
       svgf-cl bench --filter atrous --compare out/bench/results.json
     """
+    if context.invoked_subcommand:
+        refuse_options(context)
+        return
     try:
         from svgf_cl.bench import bars, compare, report, tables
         from svgf_cl.bench.cases import SHAPES
@@ -73,6 +83,15 @@ def bench(
         run.write(folder / "results.json")
         report.write(run, folder, old=earlier)
         print(f"{folder}: results.json, report.html, summary.png")
+
+
+def refuse_options(context: typer.Context) -> None:
+    """Refuse options before the name of a part: they are for the benchmark of the filter, which does not run then."""
+    for name in context.params:
+        source = context.get_parameter_source(name)
+        if source and source.name == "COMMANDLINE":
+            part = context.invoked_subcommand
+            raise typer.BadParameter(f"expected options of '{part}' behind its name, got one before it", ctx=context)
 
 
 def parse_filter(text: str) -> re.Pattern[str]:

@@ -1,0 +1,74 @@
+"""A frame's time against what Embree by itself needs for the very same rays, in turns."""
+
+from __future__ import annotations
+
+import time
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from svgf_cl.bench.rig import HOST
+from svgf_cl.bench.tracing.recording import KINDS, THREADS, Query, Recording, share_out
+from tracer import Shot, render_frame
+from tracer.vectors import Float32
+
+# The clock of what all threads spend together.
+CPU = "cpu"
+
+FRAME, EMBREE = "frame", "embree"
+
+
+class Sample(NamedTuple):
+    """A time.
+
+    Attributes
+    ----------
+    what : str
+        `FRAME`, `EMBREE` for all rays of the frame, or `embree(kind)`.
+    threads : int
+    clock : str
+        `HOST`: from first to last; `CPU`.
+    seconds : float
+    """
+
+    what: str
+    threads: int
+    clock: str
+    seconds: float
+
+
+def embree(kind: str) -> str:
+    """What Embree's time for a kind of rays is called."""
+    return f"{EMBREE} {kind}"
+
+
+def sample_round(shot: Shot, number: int, recording: Recording) -> Iterator[Sample]:
+    """Time the frame once, then the rays recorded of it on all threads and on one."""
+    yield from both_clocks(FRAME, THREADS, lambda: render_frame(shot, number))
+    for threads in sorted({THREADS, 1}, reverse=True):
+        yield from asked_again(recording, threads)
+
+
+def both_clocks(what: str, threads: int, work: Callable[[], object]) -> Iterator[Sample]:
+    """Time `work` once."""
+    begin, begin_cpu = time.perf_counter(), time.process_time()
+    work()
+    end, end_cpu = time.perf_counter(), time.process_time()
+    yield Sample(what, threads, HOST, end - begin)
+    yield Sample(what, threads, CPU, end_cpu - begin_cpu)
+
+
+def asked_again(recording: Recording, threads: int) -> Iterator[Sample]:
+    """Have Embree do all of a frame's calls again, on so many threads; each kind's time is its part of the whole."""
+    spent: dict[str, list[float]] = defaultdict(list)
+
+    def ask(job: tuple[Query, Float32]) -> None:
+        query, distance = job
+        begin = time.perf_counter()
+        query.ask(query.origin, query.direction, distance)
+        spent[query.kind].append(time.perf_counter() - begin)
+
+    jobs = [(query, query.distance.copy()) for query in recording.asked]
+    yield from both_clocks(EMBREE, threads, lambda: share_out(ask, jobs, threads))
+    for kind in KINDS:
+        yield Sample(embree(kind), threads, HOST, sum(spent[kind]) / threads)
