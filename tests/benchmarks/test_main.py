@@ -19,8 +19,10 @@ from svgf_cl import SvgfError
 from svgf_cl.bench.results import Result, Run
 from svgf_cl.bench.rig import HOST
 from svgf_cl.bench.suite import Suite
+from svgf_cl.bench.tracing import suite as tracing
 from tests.benchmarks.test_findings import FINDINGS
 from tests.svgf_cl.bench.runs import whole_run
+from tests.svgf_cl.bench.tracing.made_up import tracer_results
 
 APP = typer.Typer()
 APP.command()(everything.everything)
@@ -44,17 +46,21 @@ def _measured(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Suite, "run", lambda *_: whole_run())
     monkeypatch.setattr(oidn, "require_oidn", lambda: None)
     monkeypatch.setattr(versus_oidn, "compared", lambda *_: RACE)
+    monkeypatch.setattr(tracing, "measure", lambda *_: tracer_results())
     monkeypatch.setattr(speed_against_error, "found", lambda *_: FINDINGS)
 
 
 def test_one_report_holds_all(tmp_path: Path) -> None:
     run = CliRunner().invoke(APP, ["-o", str(tmp_path)], catch_exceptions=False)
     page = (tmp_path / "report.html").read_text()
-    for title in ("Bars", "Benchmarks", versus_oidn.TITLE, "Speed against error"):
+    for title in ("Bars", "Benchmarks", versus_oidn.TITLE, "The tracer: box", "Speed against error"):
         assert f"<h2>{title}</h2>" in page
     assert "bar: 5x5 faster than OIDN high" in page
     assert "bar: 5x5 faster than OIDN high" in run.output
-    assert any(result.name == "race" for result in Run.read(tmp_path / "results.json").results)
+    assert "raw Embree" in run.output
+    assert "the tracer&#39;s memory" in page
+    names = {result.name for result in Run.read(tmp_path / "results.json").results}
+    assert {"race", "tracer.frame.1280x720"} <= names
     assert (tmp_path / "speed-against-error" / "table.md").exists()
 
 

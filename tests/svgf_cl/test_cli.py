@@ -23,6 +23,7 @@ from svgf_cl.sequence import (
     write_frame,
     write_picture,
 )
+from tests.svgf_cl.bench.tracing import made_up
 
 COMMANDS = ("devices", "demo", "scenes", "render", "denoise", "compare", "bench", "tune")
 # Radiance of the sky in either set of a scene's lights.
@@ -430,3 +431,42 @@ def test_bench_without_its_extra_says_what_to_install(monkeypatch: pytest.Monkey
     monkeypatch.delitem(sys.modules, "svgf_cl.bench.report", raising=False)
     monkeypatch.delattr("svgf_cl.bench.report", raising=False)
     refused("pip install '.[bench]'", "bench")
+
+
+def test_bench_tracer_has_help_with_an_example(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("bench", "tracer", "--help") == 0
+    assert "svgf-cl bench tracer" in capsys.readouterr().out.split("Examples:")[1]
+    assert run("bench", "--help") == 0
+    assert "\n  tracer " in capsys.readouterr().out
+
+
+def test_bench_tracer_writes_and_compares(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    measured = made_up.tracer_results()
+    monkeypatch.setattr("svgf_cl.bench.tracing.suite.measure", lambda *_: measured)
+    assert run("bench", "tracer", "cornell", "-o", tmp_path) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["results.json", "split.png"]
+    shown = capsys.readouterr().out
+    for words in ("over raw Embree", "relMSE", "shadow", "G-buffer", "nothing compiled yet", "holds"):
+        assert words in shown
+    assert run("bench", "tracer", "--compare", tmp_path / "results.json") == 0
+    assert "times faster" in capsys.readouterr().out
+
+
+def test_what_bench_tracer_cannot_make_sense_of(tmp_path: Path, refused) -> None:
+    refused("nowhere: expected a scene's folder or file", "bench", "tracer", "nowhere")
+    refused("--size: expected WIDTHxHEIGHT", "bench", "tracer", "--size", "big")
+    refused("'--rounds'", "bench", "tracer", "--rounds", "0")
+    refused("cannot be read", "bench", "tracer", "--compare", tmp_path / "none.json")
+    refused("expected options of 'tracer' behind its name", "bench", "--size", "16x9", "tracer")
+
+
+def test_bench_tracer_without_an_extra_says_what_to_install(monkeypatch: pytest.MonkeyPatch, refused) -> None:
+    monkeypatch.setitem(sys.modules, "psutil", None)
+    for module in ("suite", "fresh"):
+        monkeypatch.delitem(sys.modules, f"svgf_cl.bench.tracing.{module}", raising=False)
+        monkeypatch.delattr(f"svgf_cl.bench.tracing.{module}", raising=False)
+    refused("pip install '.[bench]'", "bench", "tracer")
+    monkeypatch.setitem(sys.modules, "tracer", None)
+    refused("pip install '.[tracer]'", "bench", "tracer")

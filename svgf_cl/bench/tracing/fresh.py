@@ -17,6 +17,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+import psutil
+
 from svgf_cl.bench.tracing.watching import watched
 from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Shape
@@ -82,8 +84,6 @@ def starts(scene: str, shape: Shape, advance: Callable[[], None]) -> list[Fresh]
 
 def find_out(name: str, shape: Shape) -> Fresh:
     """What this process finds, which must not have rendered before."""
-    import psutil
-
     from svgf_cl.cli.scenes import open_scene
     from tracer import Shot, render_frame
     from tracer.trees import Tree

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tracer.compiled import compiled
 from tracer.geometry import surface_at
-from tracer.light_sampling import outside_density, outside_radiance, sample_light
+from tracer.light_sampling import outside_radiance, sample_light
 from tracer.materials import base_colour, emitted_radiance
 from tracer.paths import Draws, Paths
 from tracer.sampling import random4
@@ -24,13 +24,14 @@ from tracer.vectors import Float64
 
 
 class Spots(NamedTuple):
-    """Where N paths are: the material they have met or `MISS`, and whether they may be scattered there.
+    """Where N paths are: the material they have met or `MISS`, whether they may go on, and whether lights are sampled.
 
     `u` and `v` are texture coordinates, a ray to a light starts at `origin` and is drawn with `numbers`.
     """
 
     material: NDArray[np.int64]
-    scatters: NDArray[np.bool_]
+    goes_on: NDArray[np.bool_]
+    lit: NDArray[np.bool_]
     u: Float64
     v: Float64
     origin: Float64
@@ -41,6 +42,7 @@ class Spots(NamedTuple):
         """Room for `count` of them."""
         return cls(
             np.empty(count, np.int64),
+            np.empty(count, np.bool_),
             np.empty(count, np.bool_),
             np.empty(count),
             np.empty(count),
@@ -55,12 +57,14 @@ def find_spots(tables: Tables, draws: Draws, depth: int, paths: Paths, hits: Hit
     for index in range(len(paths.pixel)):
         triangle = hits.triangle[index]
         if triangle == MISS:
-            spots.material[index], spots.scatters[index] = MISS, False
+            spots.material[index], spots.goes_on[index], spots.lit[index] = MISS, False, False
             continue
-        b, c = float(hits.b[index]), float(hits.c[index])
+        b, c = np.float64(hits.b[index]), np.float64(hits.c[index])
         surface = surface_at(tables.triangles, triangle, b, c, row(paths.direction, index))
         spots.material[index], spots.u[index], spots.v[index] = surface.material, surface.u, surface.v
-        spots.scatters[index] = paths.scatterings[index] > 0 and not tables.materials.transmissive[surface.material]
+        glass = tables.materials.transmissive[surface.material]
+        spots.goes_on[index] = glass or paths.scatterings[index] > 0
+        spots.lit[index] = spots.goes_on[index] and not glass and len(tables.lights.kinds) > 0
         origin = add(surface.point, scale(surface.face_normal, tables.lift))
         numbers = random4(draws.key, draws.pixels[paths.pixel[index]], draws.sample, FIRST_SURFACE_DRAW + 2 * depth + 1)
         for axis in range(3):
@@ -71,27 +75,29 @@ def find_spots(tables: Tables, draws: Draws, depth: int, paths: Paths, hits: Hit
 
 @compiled
 def draw_numbers(draws: Draws, depth: int, paths: Paths, spots: Spots) -> float:
-    """The random numbers of all paths that may be scattered."""
+    """The random numbers of all paths that may go on."""
     total = 0.0
     for index in range(len(paths.pixel)):
-        if spots.scatters[index]:
-            pixel, draw = draws.pixels[paths.pixel[index]], FIRST_SURFACE_DRAW + 2 * depth
-            first = random4(draws.key, pixel, draws.sample, draw)
-            second = random4(draws.key, pixel, draws.sample, draw + 1)
-            total += first[0] + first[1] + first[2] + first[3] + second[0] + second[1] + second[2] + second[3]
+        pixel, draw = draws.pixels[paths.pixel[index]], FIRST_SURFACE_DRAW + 2 * depth
+        if spots.goes_on[index]:
+            u = random4(draws.key, pixel, draws.sample, draw)
+            total += u[0] + u[1] + u[2] + u[3]
+        if spots.lit[index]:
+            u = random4(draws.key, pixel, draws.sample, draw + 1)
+            total += u[0] + u[1] + u[2] + u[3]
     return total
 
 
 @compiled
 def read_textures(tables: Tables, spots: Spots) -> float:
-    """Emission wherever a surface was met, the base colour where light is scattered."""
+    """The emission of every surface met, and the base colour where paths may go on, by texture if there is one."""
     total = 0.0
     for index in range(len(spots.material)):
         material = spots.material[index]
         if material != MISS:
             emission = emitted_radiance(tables.materials, material, spots.u[index], spots.v[index])
             total += emission[0] + emission[1] + emission[2]
-        if spots.scatters[index]:
+        if spots.goes_on[index]:
             colour = base_colour(tables.materials, material, spots.u[index], spots.v[index])
             total += colour[0] + colour[1] + colour[2]
     return total
@@ -99,16 +105,14 @@ def read_textures(tables: Tables, spots: Spots) -> float:
 
 @compiled
 def sample_lights(tables: Tables, paths: Paths, spots: Spots) -> float:
-    """A light from wherever light is scattered, and what shines where a path leaves the scene."""
+    """A light from wherever one is sampled, and what shines where a path leaves the scene."""
     total = 0.0
     for index in range(len(spots.material)):
         if spots.material[index] == MISS:
-            direction = row(paths.direction, index)
-            shine = outside_radiance(tables.lights, tables.sky, direction)
+            direction, density = row(paths.direction, index), np.float64(paths.density[index])
+            shine = outside_radiance(tables.lights, tables.sky, direction, density)
             total += shine[0] + shine[1] + shine[2]
-            if paths.density[index] > 0.0:
-                total += outside_density(tables.lights, tables.sky, direction)
-        elif spots.scatters[index] and len(tables.lights.kinds):
+        if spots.lit[index]:
             u = spots.numbers[index, 0], spots.numbers[index, 1], spots.numbers[index, 2], spots.numbers[index, 3]
             origin = row(spots.origin, index)
             sample = sample_light(tables.lights, tables.triangles, tables.materials, tables.sky, origin, u)

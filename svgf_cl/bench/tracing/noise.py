@@ -1,20 +1,21 @@
-"""The error that stands beside the tracer's speed: how far a frame is from what it converges to."""
+"""The error that stands beside the tracer's speed: how far a frame of one sample per pixel is from what it shows."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 from svgf_cl.display import display
-from svgf_cl.metrics import psnr, relmse
-from tracer import Shot, render_frame, render_reference
+from svgf_cl.metrics import psnr
+from tracer import References, Shot, render_frame
 
 
 def noise(shot: Shot, number: int, spp: int, advance: Callable[[], None]) -> dict[str, float]:
-    """PSNR in dB and relMSE of a frame of one sample per pixel against a reference of `spp` samples.
+    """The relMSE to be expected of one sample per pixel, and the frame's PSNR in dB; `spp` samples are the reference.
 
-    All rays go through pixel centres: what differs is noise, the reference's too, which adds 1 / `spp` to the relMSE.
-    `advance` is called after each sample.
+    All rays go through pixel centres: what differs is noise alone. `advance` is called `chunks(spp)` times.
     """
-    noisy = render_frame(shot, number, jitter=False).color
-    reference = render_reference(shot, number, spp=spp, jitter=False, progress=lambda *_: advance())
-    return {"psnr": psnr(display(noisy), display(reference)), "relmse": relmse(noisy, reference)}
+    references = References(shot, jitter=False)
+    estimate = references.render(number, spp, advance)
+    frame, truth = render_frame(shot, number, jitter=False).color, references.picture(estimate)
+    # The variance of a mean falls with the number of samples: that of a single one is so many times as large.
+    return {"relmse": estimate.spp * estimate.error**2, "psnr": psnr(display(frame), display(truth))}

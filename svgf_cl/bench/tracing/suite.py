@@ -18,11 +18,12 @@ from svgf_cl.bench.tracing.split import split
 from svgf_cl.cli.scenes import open_scene
 from svgf_cl.frame import Shape, extent
 from tracer import Shot, render_frame
+from tracer.references import chunks
 
 # The frame that is timed: in the middle of a sequence, where the camera moves.
 FRAMES, NUMBER = 24, 12
 
-REFERENCE_SPP = 32
+REFERENCE_SPP = 64
 
 # Of the frame whose memory is measured.
 MEMORY_SHAPE: Shape = (1080, 1920)
@@ -59,7 +60,7 @@ def measure(scene: str, shape: Shape, rounds: int, progress_bar: ProgressBar) ->
     device = f"tracer: {Path(scene).stem}"
     with progress_bar("new processes", STARTS) as advance:
         started = starts(scene, MEMORY_SHAPE, advance)
-    with progress_bar("reference", REFERENCE_SPP) as advance:
+    with progress_bar("reference", chunks(REFERENCE_SPP)) as advance:
         error = noise(shot, NUMBER, REFERENCE_SPP, advance)
     render_frame(shot, NUMBER)
     recording = record(shot, NUMBER)

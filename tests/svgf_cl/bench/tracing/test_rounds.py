@@ -1,0 +1,43 @@
+"""A round times the frame and its rays, by both clocks."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from svgf_cl.bench.rig import HOST
+from svgf_cl.bench.tracing.recording import KINDS, PRIMARY, SHADOW, THREADS, Query, Recording
+from svgf_cl.bench.tracing.rounds import CPU, EMBREE, FRAME, asked_again, embree, sample_round
+from tracer import Shot
+from tracer.vectors import Float32
+
+
+def test_what_a_round_times(shot: Shot, recording: Recording) -> None:
+    found = {sample[:3]: sample.seconds for sample in sample_round(shot, 3, recording)}
+    expected = {(FRAME, THREADS, HOST), (FRAME, THREADS, CPU)}
+    for threads in (1, THREADS):
+        expected |= {
+            (EMBREE, threads, HOST),
+            (EMBREE, threads, CPU),
+            *((embree(kind), threads, HOST) for kind in KINDS),
+        }
+    assert found.keys() == expected
+    assert all(seconds > 0.0 for (_, _, clock), seconds in found.items() if clock == HOST)
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_all_is_asked_again_with_the_distances_of_the_first_time(threads: int) -> None:
+    asked = []
+
+    def ask(origin: Float32, direction: Float32, distance: Float32) -> None:
+        asked.append((len(origin), float(distance[0])))
+        distance[:] = -1.0  # as Embree does
+
+    rays = np.zeros((3, 3), np.float32), np.ones((3, 3), np.float32)
+    queries = tuple(
+        Query(kind, ask, *rays, np.full(3, reach, np.float32)) for kind, reach in ((PRIMARY, 5), (SHADOW, 7))
+    )
+    for _ in range(2):
+        names = [sample.what for sample in asked_again(Recording((), queries, ()), threads)]
+    assert sorted(asked) == [(3, 5.0), (3, 5.0), (3, 7.0), (3, 7.0)]
+    assert names == [EMBREE, EMBREE, *(embree(kind) for kind in KINDS)]
