@@ -65,7 +65,7 @@ def find_spots(tables: Tables, draws: Draws, depth: int, paths: Paths, hits: Hit
         glass = tables.materials.transmissive[surface.material]
         spots.goes_on[index] = glass or paths.scatterings[index] > 0
         spots.lit[index] = spots.goes_on[index] and not glass and len(tables.lights.kinds) > 0
-        origin = add(surface.point, scale(surface.face_normal, tables.lift))
+        origin = add(surface.point, scale(surface.face_normal, surface.lift))
         numbers = random4(draws.key, draws.pixels[paths.pixel[index]], draws.sample, FIRST_SURFACE_DRAW + 2 * depth + 1)
         for axis in range(3):
             spots.origin[index, axis] = origin[axis]
