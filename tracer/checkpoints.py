@@ -63,7 +63,7 @@ def _read(path: Path, start: Estimate) -> Estimate | None:
     try:
         with np.load(path) as file:
             light, squares = _array(file, "light", start.light), _array(file, "squares", start.squares)
-            history = tuple(Step(int(spp), float(error)) for spp, error in file["history"])
+            history = tuple(Step(int(spp), float(variance)) for spp, variance in file["history"])
         return Estimate(history[-1].spp, light, squares, history)
     except FileNotFoundError:
         return None

@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from .vectors import Float32
+from .vectors import Float32, Float64
 
 # Squared radiance below which errors count as absolute: as in `svgf_cl.metrics.relmse`.
 DARK = 0.01
 
 
 class Step(NamedTuple):
-    """How good an estimate was after so many samples per pixel."""
+    """What the part that made an estimate of so many samples per pixel told of their relative variance."""
 
     spp: int
-    error: float
+    variance: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class Estimate:
     squares : (N, 3) float32
         Sum over the samples of the squared difference between colour and mean colour.
     history : tuple of Step
-        The estimates that this one has grown out of, one for each part it was put together from; the last is itself.
+        The estimates that this one has grown out of, one for each part that was merged; the last is itself.
     """
 
     spp: int
@@ -66,11 +66,12 @@ class Estimate:
         return cls(parts[0].spp, light, squares)
 
     def merged(self, other: Estimate) -> Estimate:
-        """What the samples of both tell."""
+        """What the samples of both tell; the other ones are at least two and none of these."""
         light, squares = self.light.copy(), self.squares.copy()
         _merge(light, squares, self.spp, other.light, other.squares, other.spp)
-        both = Estimate(self.spp + other.spp, light, squares)
-        return replace(both, history=(*self.history, Step(both.spp, _relative(both.color, both.standard_error))))
+        spp, expected = self.spp + other.spp, self if self.spp else other
+        step = Step(spp, _relative_variance(other.squares / np.float32(other.spp - 1), expected.color))
+        return Estimate(spp, light, squares, (*self.history, step))
 
     @property
     def color(self) -> Float32:
@@ -87,18 +88,31 @@ class Estimate:
         return error
 
     @property
-    def error(self) -> float:
-        """Estimated relative error of the whole, the last of `history`; infinite where there is none.
+    def errors(self) -> Float64:
+        """Estimated relative error of each estimate in `history`.
 
-        It is the root of the mean over pixels and channels of ``standard_error**2 / (color**2 + DARK)``. Its square is
-        the relMSE to be expected between the estimate and the truth.
+        Its square is the relMSE to be expected between the estimate and the truth: the relative variance of a sample,
+        divided by their number. That variance is a mean of what the parts tell. Each is too large while the mean that
+        it is relative to is uncertain, by a share that falls with the samples before it; hence their square as weight.
         """
-        return self.history[-1].error if self.history else np.inf
+        spp, variance = np.array(self.history, np.float64).reshape(-1, 2).T
+        weight = np.concatenate([[1.0], spp[:-1] ** 2])
+        errors: Float64 = np.sqrt(np.cumsum(weight * variance) / np.cumsum(weight) / spp)
+        return errors
+
+    @property
+    def error(self) -> float:
+        """The last of `errors`; infinite where there is none."""
+        return float(self.errors[-1]) if self.history else np.inf
 
 
-def _relative(color: Float32, standard_error: Float32) -> float:
-    squared = np.square(standard_error) / (np.square(color) + np.float32(DARK))
-    return float(np.sqrt(squared.mean(dtype=np.float64)))
+def _relative_variance(variance: Float32, color: Float32) -> float:
+    """Mean over pixels and channels of ``variance / (color**2 + DARK)``, independent estimates of both.
+
+    Were they of the same samples, a rare bright one would hide behind the mean that it has raised itself.
+    """
+    relative = variance / (np.square(color) + np.float32(DARK))
+    return float(relative.mean(dtype=np.float64))
 
 
 def _merge(

@@ -66,7 +66,8 @@ class Goal:
 
     def overshot(self, estimate: Estimate) -> bool:
         """Whether what the estimate grew out of had reached it already."""
-        return any(self.reached(*step) for step in estimate.history[:-1])
+        steps = zip(estimate.history[:-1], estimate.errors[:-1], strict=True)
+        return any(self.reached(step.spp, error) for step, error in steps)
 
     def share(self, estimate: Estimate) -> float:
         """How much of the work is done, 0..1: the error falls with the root of the number of samples."""

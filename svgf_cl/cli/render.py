@@ -17,7 +17,6 @@ from svgf_cl.sequence import check_leftovers, frame_path, write_frame
 
 if TYPE_CHECKING:
     from tracer import Goal, References
-    from tracer.estimate import Step
     from tracer.scheduling import Map
 
 CAMERA_HELP = (
@@ -95,11 +94,12 @@ def render(
 def write_references(folder: Path, references: References, goal: Goal, run: Map) -> None:
     """Render and write the reference of each frame, and print how good they are."""
     frames = references.shot.frames
-    reached: list[Step] = []
+    reached = []
     with share_bar("references", frames) as report:
         for number in range(frames):
             for estimate in references.refine(number, goal, run):
                 report(number + goal.share(estimate), f"{estimate.spp} spp, error {estimate.error:.2g}")
             references.write(frame_path(folder, number, "reference"), number, estimate)
-            reached.append(estimate.history[-1])
-    print(f"references: at least {min(r.spp for r in reached)} spp, error at most {max(r.error for r in reached):.2g}")
+            reached.append((estimate.spp, estimate.error))
+    samples, errors = zip(*reached, strict=True)
+    print(f"references: at least {min(samples)} spp, error at most {max(errors):.2g}")

@@ -93,9 +93,17 @@ def test_an_error_is_reached_at_the_same_place_whatever_is_kept() -> None:
 def test_the_error_is_honest() -> None:
     truth = References(ROOM, seed=100).render(1, 4096).color
     for seed in range(3):
-        estimate = steps(References(ROOM, seed=seed), Goal(until_error=0.05))[-1]
+        estimate = steps(References(ROOM, seed=seed), Goal(64, 0.05))[-1]
         assert estimate.error <= 0.05
         assert relmse(estimate.color, truth) ** 0.5 == pytest.approx(estimate.error, rel=0.15)
+
+
+def test_the_error_is_not_too_small_where_light_comes_by_rare_ways() -> None:
+    glossy = Shot(builtin_scene("glossy"), (18, 32), frames=8)
+    truth = References(glossy, seed=100).render(3, 2048).color
+    for seed in range(3):
+        estimate = steps(References(glossy, seed=seed), Goal(), 3)[-1]
+        assert relmse(estimate.color, truth) ** 0.5 < estimate.error / 0.8
 
 
 @pytest.mark.parametrize("read", [0, 3])
