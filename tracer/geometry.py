@@ -148,8 +148,8 @@ def surface_at(triangles: Triangles, triangle: int, b: float, c: float, directio
 def lift(corners: Float32, triangle: int) -> float:
     """How far from a point on a triangle a ray is sure to have left it.
 
-    Such a point is off its plane, and Embree off in finding that again, by up to 2e-7 of the largest coordinate. The sum
-    of all stands for that, which takes longer to find.
+    Such a point is off its plane, and Embree off in finding that again, by up to 2e-7 of the largest coordinate. The
+    sum of all stands for that, which takes longer to find.
     """
     corner, edge1, edge2 = _row(corners, triangle, 0), _row(corners, triangle, 1), _row(corners, triangle, 2)
     return 5e-7 * (_sum(corner) + _sum(edge1) + _sum(edge2))

@@ -165,6 +165,17 @@ def test_a_matt_surface_has_no_specular_light_and_a_metal_no_diffuse(floor: Floo
         assert frame.color.min() > 0
 
 
+def test_light_is_counted_by_the_lobe_of_the_first_surface(floor: Floor) -> None:
+    """Whatever it is reflected by on its way there."""
+    matt, metal = Material(), Material(metallic=1.0, roughness=0.5)
+    dome = trimesh.creation.icosphere(1, 9.0).triangles
+    for first, other, name in ((matt, metal, "specular"), (metal, matt, "diffuse")):
+        lamp = Instance(trimesh.creation.icosphere(1, 0.3).triangles + np.array((1, 2, 0)), Material(emission=WHITE))
+        frame = still(Scene([floor(first), Instance(dome, other), lamp]), AT_ORIGIN, (32, 32), bounces=3)
+        assert frame.indirect.max() > 0
+        np.testing.assert_array_equal(getattr(frame, name), 0)
+
+
 def slab(thickness: float, **given: object) -> Instance:
     """A pane of glass across the view, from z = -1 to the back."""
     pane = trimesh.creation.box(
