@@ -49,6 +49,9 @@ class Tree:
         self._embree = EmbreeScene()
         vertices = corners.copy()
         vertices[:, 1:] += corners[:, :1]
+        # Rounded outwards: a flat tree would lose rays to the last bit.
+        self._low = np.nextafter(vertices.min((0, 1)), np.float32(-np.inf))
+        self._high = np.nextafter(vertices.max((0, 1)), np.float32(np.inf))
         TriangleMesh(self._embree, vertices)
         # Embree builds its tree at the first query: not in several threads at once.
         self.blocked(np.zeros((1, 3), np.float32), np.ones((1, 3), np.float32), np.ones(1, np.float32))
@@ -62,6 +65,11 @@ class Tree:
         """Whether any triangle lies within `distance` (N,), which is spoilt, along each ray (N, 3)."""
         blocked: NDArray[np.bool_] = self._embree.run(origin, direction, dists=distance, query="OCCLUDED") == 0
         return blocked
+
+    def near(self, origin: Float32, direction: Float32, distance: Float32) -> NDArray[np.int32]:
+        """Which of the rays (N, 3) pass the tree's bounding box within `distance` (N,): few need to ask more of it."""
+        rays = np.empty(len(origin), np.int32)
+        return rays[: _pass_box(self._low, self._high, origin, direction, distance, rays)]
 
 
 class Trees:
@@ -85,12 +93,11 @@ class Trees:
         distance = np.full(count, FAR, np.float32)
         hits = Hits(np.full(count, MISS, np.int32), np.zeros(count, np.float32), np.zeros(count, np.float32), distance)
         for number, tree in enumerate(self.trees):
-            if tree.masked:
-                self._intersect_masked(tree, origin, direction, hits)
-            elif number:
-                _merge(hits, tree.nearest(origin, direction, distance), tree.first)
-            else:
+            if number == 0 and not tree.masked:
                 hits = tree.nearest(origin, direction, distance)
+            else:
+                ray = tree.near(origin, direction, hits.distance)
+                self._search(tree, ray, origin[ray], direction[ray], hits)
         return hits
 
     def occluded(self, origin: Float32, direction: Float32, distance: Float32) -> NDArray[np.bool_]:
@@ -100,28 +107,54 @@ class Trees:
             if number == 0 and not tree.masked:
                 result = tree.blocked(origin, direction, distance)
                 continue
-            free = np.flatnonzero(~result)
-            rays, ahead, reach = origin[free], direction[free], distance[free]
+            distance[result] = 0.0
+            ray = tree.near(origin, direction, distance)
+            rays, ahead, reach = origin[ray], direction[ray], distance[ray]
             if tree.masked:
-                hits = Hits(np.full(len(free), MISS, np.int32), np.empty_like(reach), np.empty_like(reach), reach)
-                self._intersect_masked(tree, rays, ahead, hits)
-                result[free] = hits.triangle != MISS
+                hits = Hits(np.full(len(ray), MISS, np.int32), np.empty_like(reach), np.empty_like(reach), reach)
+                self._search(tree, np.arange(len(ray), dtype=np.int32), rays, ahead, hits)
+                result[ray] = hits.triangle != MISS
             else:
-                result[free] = tree.blocked(rays, ahead, reach)
+                result[ray] = tree.blocked(rays, ahead, reach)
         return result
 
-    def _intersect_masked(self, tree: Tree, origin: Float32, direction: Float32, hits: Hits) -> None:
-        """Put the tree's solid points into `hits` where they are nearer; a ray goes on from every other point."""
-        ray = np.arange(len(origin), dtype=np.int32)
-        travelled = np.zeros(len(origin), np.float32)
+    def _search(self, tree: Tree, ray: NDArray[np.int32], origin: Float32, direction: Float32, hits: Hits) -> None:
+        """Put the tree's solid points into `hits` where they are nearer; a ray goes on from every other point.
+
+        `ray` (K,) are the numbers of the rays in `hits`.
+        """
+        travelled = np.zeros(len(ray), np.float32)
         while len(ray):
             found = tree.nearest(origin, direction, hits.distance[ray] - travelled)
             passed, step = np.empty(len(ray), np.int32), np.empty(len(ray), np.float32)
-            count = _settle(self.triangles, self.materials, found, tree.first, ray, travelled, hits, passed, step)
+            count = _settle(
+                self.triangles, self.materials, found, tree.first, tree.masked, ray, travelled, hits, passed, step
+            )
             passed, step = passed[:count], step[:count]
             ray, travelled = ray[passed], travelled[passed] + step
             direction = direction[passed]
             origin = origin[passed] + step[:, None] * direction
+
+
+@compiled
+def _pass_box(
+    low: Float32, high: Float32, origin: Float32, direction: Float32, distance: Float32, rays: NDArray[np.int32]
+) -> int:
+    """Put the rays that are within a box somewhere along `distance` (N,) into `rays`, and count them."""
+    count = 0
+    for ray in range(len(origin)):
+        enters, leaves = 0.0, np.float64(distance[ray])
+        for axis in range(3):
+            start, way = np.float64(origin[ray, axis]), np.float64(direction[ray, axis])
+            # A ray along a face has way 0: it is between the faces or nowhere, as the infinite quotients tell.
+            inverse = 1.0 / way if way != 0.0 else np.inf
+            first, second = (low[axis] - start) * inverse, (high[axis] - start) * inverse
+            enters = max(enters, min(first, second))
+            leaves = min(leaves, max(first, second))
+        if enters < leaves:
+            rays[count] = ray
+            count += 1
+    return count
 
 
 @compiled
@@ -130,6 +163,7 @@ def _settle(
     materials: Materials,
     found: Hits,
     first: int,
+    masked: bool,
     ray: NDArray[np.int32],
     travelled: Float32,
     hits: Hits,
@@ -147,7 +181,7 @@ def _settle(
         triangle = first + found.triangle[index]
         b, c = found.b[index], found.c[index]
         u, v = texture_coordinates(triangles, triangle, b, c)
-        if is_solid(materials, triangles.material[triangle], u, v):
+        if not masked or is_solid(materials, triangles.material[triangle], u, v):
             target = ray[index]
             hits.triangle[target] = triangle
             hits.b[target], hits.c[target] = b, c
@@ -156,12 +190,3 @@ def _settle(
             passed[count], step[count] = index, found.distance[index] + lift(triangles.corners, triangle)
             count += 1
     return count
-
-
-@compiled
-def _merge(hits: Hits, nearer: Hits, first: int) -> None:
-    """Put what a further tree found into `hits`; it has looked no further than these."""
-    for ray in range(len(nearer.triangle)):
-        if nearer.triangle[ray] != MISS:
-            hits.triangle[ray] = first + nearer.triangle[ray]
-            hits.b[ray], hits.c[ray] = nearer.b[ray], nearer.c[ray]
