@@ -99,8 +99,11 @@ def test_every_path_in_a_white_corner_brings_back_the_sky(quad: Quad) -> None:
 
 
 @pytest.mark.parametrize("bounces", [0, 2])
-def test_walls_that_shine_in_a_closed_box_make_a_geometric_series(bounces: int) -> None:
-    scene = Scene([box(Material(ALBEDO, emission=SKY))])
+@pytest.mark.parametrize("glass", [False, True])
+def test_walls_that_shine_in_a_closed_box_make_a_geometric_series(bounces: int, glass: bool) -> None:
+    """Glass elsewhere does not let paths be reflected more often."""
+    outside = Instance(ball(Material()).corners + 9.0, Material(transmissive=glass))
+    scene = Scene([box(Material(ALBEDO, emission=SKY)), outside])
     frame = still(scene, Camera((0, 0, 1), (0.3, 0.2, 0), fov_y=90.0), bounces=bounces)
     albedo = np.array(ALBEDO)
     np.testing.assert_array_equal(frame.emission, np.broadcast_to(np.float32(SKY), (200, 200, 3)))
