@@ -24,7 +24,7 @@ from .vectors import Float32, Float64
 
 # Pixels that one task traces at once: few enough for what Embree and the compiled loops hand to each other to stay in a
 # core's cache, enough to amortise their calls.
-TILE = 1 << 14
+TILE = 1 << 15
 
 # Moments within the time the shutter is open; each ray picks one. What moves by fewer pixels than this in that time
 # leaves no gaps between its pictures.

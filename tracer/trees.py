@@ -10,9 +10,11 @@ from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
+from .camera import vector
 from .compiled import compiled
 from .geometry import Triangles, lift, texture_coordinates
 from .materials import Materials, is_solid
+from .vec3 import Vec3
 from .vectors import Float32
 
 MISS = -1
@@ -50,8 +52,8 @@ class Tree:
         vertices = corners.copy()
         vertices[:, 1:] += corners[:, :1]
         # Rounded outwards: a flat tree would lose rays to the last bit.
-        self._low = np.nextafter(vertices.min((0, 1)), np.float32(-np.inf))
-        self._high = np.nextafter(vertices.max((0, 1)), np.float32(np.inf))
+        self._low = vector(np.nextafter(vertices.min((0, 1)), np.float32(-np.inf)))
+        self._high = vector(np.nextafter(vertices.max((0, 1)), np.float32(np.inf)))
         TriangleMesh(self._embree, vertices)
         # Embree builds its tree at the first query: not in several threads at once.
         self.blocked(np.zeros((1, 3), np.float32), np.ones((1, 3), np.float32), np.ones(1, np.float32))
@@ -68,8 +70,9 @@ class Tree:
 
     def near(self, origin: Float32, direction: Float32, distance: Float32) -> NDArray[np.int32]:
         """Which of the rays (N, 3) pass the tree's bounding box within `distance` (N,): few need to ask more of it."""
-        rays = np.empty(len(origin), np.int32)
-        return rays[: _pass_box(self._low, self._high, origin, direction, distance, rays)]
+        passes = np.empty(len(origin), np.bool_)
+        _pass_box(self._low, self._high, origin, direction, distance, passes)
+        return np.flatnonzero(passes).astype(np.int32)
 
 
 class Trees:
@@ -138,23 +141,17 @@ class Trees:
 
 @compiled
 def _pass_box(
-    low: Float32, high: Float32, origin: Float32, direction: Float32, distance: Float32, rays: NDArray[np.int32]
-) -> int:
-    """Put the rays that are within a box somewhere along `distance` (N,) into `rays`, and count them."""
-    count = 0
+    low: Vec3, high: Vec3, origin: Float32, direction: Float32, distance: Float32, passes: NDArray[np.bool_]
+) -> None:
+    """Tell of each ray whether it is within a box somewhere along `distance` (N,); without branches, for vectors."""
     for ray in range(len(origin)):
-        enters, leaves = 0.0, np.float64(distance[ray])
-        for axis in range(3):
-            start, way = np.float64(origin[ray, axis]), np.float64(direction[ray, axis])
-            # A ray along a face has way 0: it is between the faces or nowhere, as the infinite quotients tell.
-            inverse = 1.0 / way if way != 0.0 else np.inf
-            first, second = (low[axis] - start) * inverse, (high[axis] - start) * inverse
-            enters = max(enters, min(first, second))
-            leaves = min(leaves, max(first, second))
-        if enters < leaves:
-            rays[count] = ray
-            count += 1
-    return count
+        x, y, z = 1.0 / direction[ray, 0], 1.0 / direction[ray, 1], 1.0 / direction[ray, 2]
+        x1, x2 = (low[0] - origin[ray, 0]) * x, (high[0] - origin[ray, 0]) * x
+        y1, y2 = (low[1] - origin[ray, 1]) * y, (high[1] - origin[ray, 1]) * y
+        z1, z2 = (low[2] - origin[ray, 2]) * z, (high[2] - origin[ray, 2]) * z
+        enters = max(max(min(x1, x2), min(y1, y2)), max(min(z1, z2), 0.0))
+        leaves = min(min(max(x1, x2), max(y1, y2)), min(max(z1, z2), distance[ray]))
+        passes[ray] = enters < leaves
 
 
 @compiled
