@@ -84,8 +84,10 @@ class Cluster:
         Raises
         ------
         SceneError
-            A worker has another version of the tracer, or the scheduler is gone.
+            A worker has another version of the tracer, a task kills its workers, or the scheduler is gone.
         """
+        from distributed import KilledWorker
+
         task, there, remaining = partial(_do, function, tracer_version()), self._send(shot), iter(items)
         pending: deque[Future[Any]] = deque()
         try:
@@ -97,6 +99,8 @@ class Cluster:
                 if not pending:
                     return
                 yield pending.popleft().result()
+        except KilledWorker as error:
+            raise SceneError(f"--scheduler: workers die of a task, for want of memory perhaps ({error})") from error
         except (CancelledError, OSError) as error:
             raise SceneError(f"--scheduler: the connection was lost ({error}); run again when it is back") from error
         finally:

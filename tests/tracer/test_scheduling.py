@@ -11,6 +11,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+import dask
 import numpy as np
 import pytest
 from distributed import LocalCluster
@@ -43,6 +44,10 @@ def fail(shot: Shot, item: int) -> int:
     if item == 2:
         raise SceneError("scene: expected a roof")
     return item
+
+
+def end_worker(shot: Shot, item: int) -> None:
+    os.kill(os.getpid(), signal.SIGKILL)
 
 
 def assert_same(found: Frame, expected: Frame) -> None:
@@ -107,6 +112,16 @@ def test_what_goes_wrong_in_a_task_is_raised_here(cluster: LocalCluster) -> None
         assert [next(results), next(results)] == [0, 1]
         with pytest.raises(SceneError, match="expected a roof"):
             next(results)
+
+
+def test_a_task_that_kills_every_worker_is_given_up() -> None:
+    with (
+        dask.config.set({"distributed.scheduler.allowed-failures": 1}),
+        LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=":0", protocol="tcp://") as cluster,
+        scheduled(cluster.scheduler_address) as run,
+        pytest.raises(SceneError, match="workers die of a task"),
+    ):
+        next(run(end_worker, ROOM, range(3)))
 
 
 def test_workers_with_another_tracer_are_refused(cluster: LocalCluster, monkeypatch: pytest.MonkeyPatch) -> None:
