@@ -90,11 +90,11 @@ def draw_numbers(draws: Draws, depth: int, paths: Paths, spots: Spots) -> float:
 
 @compiled
 def read_textures(tables: Tables, spots: Spots) -> float:
-    """The emission of every surface met, and the base colour where paths may go on, by texture if there is one."""
+    """The emission of what shines, and the base colour where paths may go on, by texture if there is one."""
     total = 0.0
     for index in range(len(spots.material)):
         material = spots.material[index]
-        if material != MISS:
+        if material != MISS and tables.lights.lamp_density[material] > 0.0:
             emission = emitted_radiance(tables.materials, material, spots.u[index], spots.v[index])
             total += emission[0] + emission[1] + emission[2]
         if spots.goes_on[index]:
