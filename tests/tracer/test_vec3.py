@@ -2,8 +2,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from tracer import vec3
+from tracer.compiled import compiled
 
 A, B = (1.0, -2.0, 3.0), (0.5, 4.0, -1.5)
 NORMALS = [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0), (0.36, 0.48, 0.8), (0.48, -0.6, -0.64)]
@@ -40,3 +42,14 @@ def test_the_frame_of_a_normal_is_orthonormal_and_right_handed(normal: vec3.Vec3
 def test_there_and_back_is_the_same_vector(normal: vec3.Vec3) -> None:
     np.testing.assert_allclose(vec3.to_world((0.0, 0.0, 1.0), normal), normal, atol=1e-12)
     np.testing.assert_allclose(vec3.to_local(vec3.to_world(A, normal), normal), A, atol=1e-12)
+
+
+@compiled
+def squared_length(rows: NDArray[np.float32], out: NDArray[np.float64]) -> None:
+    out[0] = vec3.dot(vec3.row(rows, 1), vec3.row(rows, 1))
+
+
+def test_arithmetic_on_rows_of_single_precision_is_in_double_precision() -> None:
+    rows, out = np.array([A, (0.1, 0.2, 0.3)], np.float32), np.empty(1)
+    squared_length(rows, out)
+    assert out[0] == pytest.approx(np.square(rows[1].astype(np.float64)).sum(), rel=1e-14)
