@@ -51,9 +51,9 @@ class Tree:
         self._embree = EmbreeScene()
         vertices = corners.copy()
         vertices[:, 1:] += corners[:, :1]
-        # Rounded outwards: a flat tree would lose rays to the last bit.
-        self._low = vector(np.nextafter(vertices.min((0, 1)), np.float32(-np.inf)))
-        self._high = vector(np.nextafter(vertices.max((0, 1)), np.float32(np.inf)))
+        # With room around it: rounding must not lose rays that run along a face of the box.
+        room = 1e-5 * np.abs(vertices).max()
+        self._low, self._high = vector(vertices.min((0, 1)) - room), vector(vertices.max((0, 1)) + room)
         TriangleMesh(self._embree, vertices)
         # Embree builds its tree at the first query: not in several threads at once.
         self.blocked(np.zeros((1, 3), np.float32), np.ones((1, 3), np.float32), np.ones(1, np.float32))
@@ -110,7 +110,7 @@ class Trees:
             if number == 0 and not tree.masked:
                 result = tree.blocked(origin, direction, distance)
                 continue
-            distance[result] = 0.0
+            distance[result] = -1.0  # asks no more
             ray = tree.near(origin, direction, distance)
             rays, ahead, reach = origin[ray], direction[ray], distance[ray]
             if tree.masked:
@@ -151,7 +151,7 @@ def _pass_box(
         z1, z2 = (low[2] - origin[ray, 2]) * z, (high[2] - origin[ray, 2]) * z
         enters = max(max(min(x1, x2), min(y1, y2)), max(min(z1, z2), 0.0))
         leaves = min(min(max(x1, x2), max(y1, y2)), min(max(z1, z2), distance[ray]))
-        passes[ray] = enters < leaves
+        passes[ray] = enters <= leaves
 
 
 @compiled

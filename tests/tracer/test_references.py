@@ -130,7 +130,7 @@ def test_a_damaged_file_is_rendered_again(kept: Path) -> None:
 
 
 def test_it_does_not_hang_on_the_number_of_threads(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    shot = replace(ROOM, shape=(190, 180))
+    shot = replace(ROOM, shape=(260, 270))
     assert shot.shape[0] * shot.shape[1] > 2 * TILE
     found = []
     for threads in (1, 5):

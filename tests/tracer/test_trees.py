@@ -170,3 +170,13 @@ def test_a_ray_on_its_way_from_a_moved_body_does_not_find_it_again() -> None:
     origin, direction = rows((5000.1, 3010, 1000.2)), rows(DOWN)
     assert not found.occluded(origin, direction, reach(1)).any()
     assert found.intersect(origin, direction).triangle == MISS
+
+
+def test_a_ray_along_the_faces_of_a_moving_body_is_not_lost() -> None:
+    # The ball of the first tree is far off; the sheet's box is flat, and rays run in the planes of its sides.
+    far = Instance(trimesh.creation.icosphere(1, 0.1).triangles + 50.0, Material())
+    sheet = np.array([[(0, 0, 0), (1, 0, 0), (1, 0, 1)], [(0, 0, 0), (1, 0, 1), (0, 0, 1)]], float)
+    found = trees([far, Instance(sheet, Material(), motion=STILL)])
+    origin = rows((0.5, 1, 0), (0, 1, 0.5), (0.5, 1, 1), (1, 1, 0.5), (0.25, 1, 0.5), (1.1, 1, 0.5))
+    hits = found.intersect(origin, np.broadcast_to(np.array(DOWN, np.float32), origin.shape).copy())
+    np.testing.assert_array_equal(ids(found, hits), [2, 2, 2, 2, 2, 0])

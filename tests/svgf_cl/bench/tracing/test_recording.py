@@ -47,7 +47,9 @@ def test_kinds_of_rays(recording: Recording) -> None:
 
 def test_each_tree_is_asked() -> None:
     recording = record(Shot(builtin_scene("swing"), (18, 32), 24), 3)
-    assert recording.queries(PRIMARY) == 2 * recording.rays(PRIMARY), "what moves, and what does not"
+    assert recording.rays(PRIMARY) < recording.queries(PRIMARY) < 2 * recording.rays(PRIMARY), (
+        "all rays ask what does not move, some what moves"
+    )
 
 
 def test_an_answer_is_what_the_shading_loop_got(recording: Recording) -> None:
