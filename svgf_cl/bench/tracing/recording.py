@@ -73,7 +73,7 @@ class Recording:
     sent : tuple of (str, int)
         The batches of rays that the tracer sent into the scene: their kind, and how many.
     asked : tuple of Query
-        What became of that: each ray goes to every tree of the scene, and on from each hole in a surface.
+        What became of that: a ray may go to several trees, and on from each hole in a surface.
     shadings : tuple of Shading
     """
 
