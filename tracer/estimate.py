@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .compiled import compiled
 from .vectors import Float32, Float64
 
 # Squared radiance below which errors count as absolute: as in `svgf_cl.metrics.relmse`.
@@ -52,9 +53,9 @@ class Estimate:
         """What single samples (N, 5, 3), at least one, tell."""
         remaining = iter(samples)
         light = next(remaining).copy()
-        squares, spp = np.zeros((len(light), 3), np.float32), 1
+        squares, alone, spp = np.zeros((len(light), 3), np.float32), np.zeros((len(light), 3), np.float32), 1
         for sample in remaining:
-            _merge(light, squares, spp, sample, 0.0, 1)
+            _merge(light, squares, spp, sample, alone, 1)
             spp += 1
         return cls(spp, light, squares)
 
@@ -76,7 +77,7 @@ class Estimate:
     @property
     def color(self) -> Float32:
         """The mean colour (N, 3)."""
-        color: Float32 = self.light.sum(1)
+        color: Float32 = np.einsum("nkc->nc", self.light)
         return color
 
     @property
@@ -115,8 +116,9 @@ def _relative_variance(variance: Float32, color: Float32) -> float:
     return float(relative.mean(dtype=np.float64))
 
 
+@compiled
 def _merge(
-    light: Float32, squares: Float32, count: int, other_light: Float32, other_squares: Float32 | float, other_count: int
+    light: Float32, squares: Float32, count: int, other_light: Float32, other_squares: Float32, other_count: int
 ) -> None:
     """Add other samples to the mean `light` and the `squares` of `count` samples, in place.
 
@@ -124,6 +126,12 @@ def _merge(
     Variances" (1979): nothing cancels, however far the mean is from zero.
     """
     total = count + other_count
-    difference = other_light - light
-    light += difference * np.float32(other_count / total)
-    squares += other_squares + np.square(difference.sum(1)) * np.float32(count * other_count / total)
+    share, spread = np.float32(other_count / total), np.float32(count * other_count / total)
+    for pixel in range(len(light)):
+        for channel in range(3):
+            color = np.float32(0.0)
+            for kind in range(5):
+                difference = other_light[pixel, kind, channel] - light[pixel, kind, channel]
+                light[pixel, kind, channel] += difference * share
+                color += difference
+            squares[pixel, channel] += other_squares[pixel, channel] + color * color * spread
