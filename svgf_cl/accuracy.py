@@ -106,7 +106,7 @@ def oracle_stages(
     frame: Frame, guides: reference.Guides, now: dict[str, Single], previous: History | None, settings: Settings
 ) -> Iterator[tuple[str, Array]]:
     """What the oracle makes of each kernel's actual input, stage by stage."""
-    illumination, exact = reference.demodulate(frame)
+    illumination, exact = reference.demodulate(frame, settings)
     yield "normal", exact.normal
     yield "depth", exact.depth
     yield "demodulated", illumination

@@ -35,7 +35,8 @@ from svgf_cl.settings import Settings
 RADIANCE_MAX = 1e38
 FLOAT32_MAX = float(np.finfo(np.float32).max)
 ALBEDO_FLOOR = 0.001
-ILLUMINATION_MAX = 1e15
+# Whether kept as 16-bit floats.
+ILLUMINATION_MAX = {False: 1e15, True: 65504.0}
 MOTION_MAX = 1e6
 NO_HISTORY = (-MOTION_MAX, -MOTION_MAX, 0.0)
 LENGTH_MAX = 1024
@@ -98,12 +99,14 @@ class History:
     accumulated: Accumulated
 
 
-def demodulate(frame: Frame) -> tuple[Array, Guides]:
+def demodulate(frame: Frame, settings: Settings | None = None) -> tuple[Array, Guides]:
     """Section 1: make the input safe, then divide out the albedo.
 
     Parameters
     ----------
     frame : Frame of numpy arrays.
+    settings : Settings, optional
+        Say how bright light may be.
 
     Returns
     -------
@@ -120,7 +123,8 @@ def demodulate(frame: Frame) -> tuple[Array, Guides]:
 
     radiance = np.stack([given["direct"], given["indirect"]] if "direct" in given else [given["color"] - emission])
     illumination = np.where(finite(radiance), radiance, 0) / albedo
-    return np.clip(illumination, 0, ILLUMINATION_MAX), guides
+    greatest = ILLUMINATION_MAX[(settings or Settings()).half_history]
+    return np.clip(illumination, 0, greatest), guides
 
 
 def safe_surface(normal: Array, depth: Array) -> tuple[Array, Array]:
@@ -364,7 +368,7 @@ class Reference:
         """Filter the next frame of the sequence: (H, W, 3), linear HDR."""
         frame.check(self.shape)
         settings = self.settings
-        illumination, guides = demodulate(frame)
+        illumination, guides = demodulate(frame, self.settings)
         self.guides = guides
         stages = self.stages = {"demodulated": illumination}
 
