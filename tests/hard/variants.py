@@ -79,8 +79,8 @@ class Variant:
     def errors(self, got: np.ndarray, expected: np.ndarray) -> np.ndarray:
         """Error of each pixel relative to its greatest channel, (H, W), beside the step to black.
 
-        Of an antialiased picture the error counts in the tone mapped domain, where it was rounded: out there it grows by
-        1 + Y.
+        Of an antialiased picture the error counts in the tone mapped domain, where it was rounded: coming back it grows
+        by 1 + Y.
         """
         size = largest_channel(expected)[..., 0]
         steps = 4 * self.signals * self.least  # a handful of stages
