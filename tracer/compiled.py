@@ -25,7 +25,14 @@ def _digest() -> str:
 FOLDER = cache_folder() / "compiled" / _digest()
 
 
-OPTIONS: dict[str, Any] = {"nogil": True, "cache": True, "error_model": "numpy", "forceinline": True, "_nrt": False}
+OPTIONS: dict[str, Any] = {
+    "nogil": True,
+    "cache": True,
+    "error_model": "numpy",
+    "forceinline": True,
+    "_nrt": False,
+    "fastmath": {"arcp", "nsz"},
+}
 
 
 def compiled(function: Function) -> Function:
@@ -33,7 +40,8 @@ def compiled(function: Function) -> Function:
 
     It is inlined wherever another compiled function calls it: a scene's tables, hundreds of words, would be copied at
     each call. Without allocation no array needs its references counted, which took most of the time. Arithmetic
-    follows IEEE 754 as written: a picture is the same with any number of threads.
+    follows IEEE 754 as written, but a quotient may be the product with a reciprocal, and the sign of zero is not kept: a
+    picture is the same with any number of threads.
     """
     others = vars(numba.config)["CACHE_DIR"]
     vars(numba.config)["CACHE_DIR"] = str(FOLDER)

@@ -36,7 +36,9 @@ def describe(
     features.roughness[pixel] = 0.0 if glass else materials.roughness[material]
     features.hit_distance[pixel, 0] = features.hit_distance[pixel, 1] = 0.0
     now = project(lens, subtract(surface.point, lens.position))
-    previous = interpolated(before.corners, triangle, b, c)
+    previous = surface.point
+    if triangle >= before.first:
+        previous = interpolated(before.corners, triangle - before.first, b, c)
     then = project(before.lens, subtract(previous, before.lens.position))
     for axis in range(3):
         features.normal[pixel, axis] = surface.normal[axis]

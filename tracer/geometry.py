@@ -81,10 +81,18 @@ class Triangles(NamedTuple):
         uv = [np.zeros((len(i.corners), 3, 2)) if i.uv is None else i.uv for i in instances]
         return cls(
             corners_of(instances, time),
-            _differences(_joined([instance.normals_at(time) for instance in instances], (3, 3))),
+            normals_of(instances, time),
             _differences(_joined(uv, (3, 2))),
             np.repeat(np.array(ids, np.uint32), counts),
             np.repeat(np.array(materials, np.int32), counts),
+        )
+
+    def moved(self, instances: Sequence[Instance], time: float) -> Triangles:
+        """The same where the last of them, those of `instances`, are at `time` in seconds."""
+        first = len(self.corners) - sum(len(instance.corners) for instance in instances)
+        return self._replace(
+            corners=np.concatenate([self.corners[:first], corners_of(instances, time)]),
+            normals=np.concatenate([self.normals[:first], normals_of(instances, time)]),
         )
 
 
@@ -93,9 +101,9 @@ def corners_of(instances: Sequence[Instance], time: float) -> Float32:
     return _differences(_joined([instance.corners_at(time) for instance in instances], (3, 3)))
 
 
-def joined(first: Triangles, second: Triangles) -> Triangles:
-    """The triangles of both, those of the first before those of the second."""
-    return Triangles(*(np.concatenate(pair) for pair in zip(first, second, strict=True)))
+def normals_of(instances: Sequence[Instance], time: float) -> Float32:
+    """The first corner's normal and two differences to it (T, 3, 3) of every triangle, likewise."""
+    return _differences(_joined([instance.normals_at(time) for instance in instances], (3, 3)))
 
 
 def cofactors(matrix: NDArray[np.floating]) -> Float64:

@@ -10,18 +10,18 @@ from __future__ import annotations
 import numpy as np
 
 from .camera import Lens
-from .paths import DIRECT_DIFFUSE, INDIRECT_DIFFUSE, Before, Draws, Features, Paths, ShadowRays
+from .paths import DIRECT_DIFFUSE, INDIRECT_DIFFUSE, Aim, Before, Draws, Features, Paths, ShadowRays
 from .scene import Moment
 from .shading import deposit, shade, start_paths
 from .trees import FAR, MISS, Hits, Trees
-from .vectors import Float32, Float64
+from .vectors import Float32
 
 # Surfaces of smooth glass that a path may pass in addition to those it may be scattered at: in and out of two objects.
 GLASS = 4
 
 
 def trace(
-    moment: Moment, lens: Lens, before: Before, draws: Draws, positions: Float64, bounces: int, features: Features
+    moment: Moment, lens: Lens, before: Before, draws: Draws, aim: Aim, bounces: int, features: Features
 ) -> Float32:
     """Trace one path through each of N pixels.
 
@@ -31,8 +31,7 @@ def trace(
     lens : Lens
     before : Before
     draws : Draws
-    positions : (N, 2) float64
-        Image positions (x, y) that the rays go through, in pixels.
+    aim : Aim
     bounces : int
         Surfaces that may scatter a path after the first.
     features : Features
@@ -47,7 +46,7 @@ def trace(
     count = len(draws.pixels)
     light = np.zeros((count, 5, 3), np.float32)
     paths, ahead, shadows = Paths.empty(count), Paths.empty(count), ShadowRays.empty(count)
-    start_paths(lens, draws, positions, bounces + 1, paths)
+    start_paths(lens, draws, aim, bounces + 1, paths)
     glass = GLASS if tables.materials.transmissive.any() else 0
     last = bounces + 1 + glass
     for depth in range(last + 1):

@@ -121,10 +121,26 @@ class Radiance(NamedTuple):
 
 
 class Before(NamedTuple):
-    """What motion is measured from: the camera, and the triangles' corners, of one frame earlier."""
+    """What motion is measured from: the camera of one frame earlier, and the `corners` of the triangles that move.
+
+    Those are numbered from `first` on.
+    """
 
     lens: Lens
+    first: int
     corners: Float32
+
+
+class Aim(NamedTuple):
+    """Where rays go through an image `width` pixels wide: off the pixel's centre by `x`, `y`.
+
+    They are spread at random over a square of side `spread` around that, in pixels.
+    """
+
+    width: int
+    x: float
+    y: float
+    spread: float
 
 
 class Draws(NamedTuple):

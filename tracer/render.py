@@ -15,12 +15,12 @@ from svgf_cl.frame import Frame
 from .camera import Lens
 from .errors import SceneError
 from .integrator import trace
-from .paths import Before, Draws, Features, Radiance
+from .paths import Aim, Before, Draws, Features, Radiance
 from .sampling import pixel_jitter, stream_key
 from .scene import Moment
-from .shading import pick_moments, spread, sum_up
+from .shading import pick_moments, sum_up
 from .shot import Shot
-from .vectors import Float32, Float64
+from .vectors import Float32
 
 # Pixels that one task traces at once: few enough for what Embree and the compiled loops hand to each other to stay in a
 # core's cache, enough to amortise their calls.
@@ -122,8 +122,10 @@ class Sampler:
     def __init__(self, shot: Shot, number: int, *, stream: int, seed: int, jitter: bool, bounces: int) -> None:
         self._exposures = _exposures(shot, number)
         self._key = stream_key(stream, seed, number)
-        self._width, self._jitter, self._bounces = shot.shape[1], jitter, bounces
-        self._offset = pixel_jitter(number) if stream == FRAME else None
+        self._bounces = bounces
+        self._further = Aim(shot.shape[1], 0.0, 0.0, 1.0 if jitter else 0.0)
+        offset = Aim(shot.shape[1], *pixel_jitter(number), 0.0)
+        self._first = offset if jitter and stream == FRAME else self._further
 
     def trace(self, pixels: slice, sample: int, features: Features = NO_FEATURES) -> Float32:
         """Light (N, 5, 3) of one sample of neighbouring pixels, which count row by row, and `features` if wanted.
@@ -131,28 +133,20 @@ class Sampler:
         A sample, by its number >= 0, is the same whoever traces it, and with whichever others.
         """
         draws = Draws(self._key, sample, np.arange(pixels.start, pixels.stop))
-        positions = self._positions(draws)
+        aim = self._first if sample == 0 else self._further
         if len(self._exposures) == 1:
-            return trace(*self._exposures[0], draws, positions, self._bounces, features)
-        light, moments = np.empty((len(positions), 5, 3), np.float32), np.empty(len(positions), np.int64)
+            return trace(*self._exposures[0], draws, aim, self._bounces, features)
+        count = len(draws.pixels)
+        light, moments = np.empty((count, 5, 3), np.float32), np.empty(count, np.int64)
         pick_moments(draws, len(self._exposures), moments)
         for moment, exposure in enumerate(self._exposures):
             chosen = np.flatnonzero(moments == moment)
             part = draws._replace(pixels=draws.pixels[chosen])
             seen = Features.empty(len(chosen) if len(features.depth) else 0)
-            light[chosen] = trace(*exposure, part, positions[chosen], self._bounces, seen)
+            light[chosen] = trace(*exposure, part, aim, self._bounces, seen)
             for target, values in zip(features, seen, strict=True) if len(features.depth) else ():
                 target[chosen] = values
         return light
-
-    def _positions(self, draws: Draws) -> Float64:
-        """Image positions (N, 2) of a sample's rays."""
-        positions = np.stack([draws.pixels % self._width, draws.pixels // self._width], axis=1).astype(np.float64)
-        if self._jitter and self._offset and draws.sample == 0:
-            positions += self._offset
-        elif self._jitter:
-            spread(draws, positions)
-        return positions
 
 
 def tiles(count: int) -> list[slice]:
@@ -173,7 +167,7 @@ def _exposure(shot: Shot, now: float, before: float) -> Exposure:
     return Exposure(
         scene.at(shot.time(now)),
         shot.camera(now).lens(shape),
-        Before(shot.camera(before).lens(shape), scene.corners_at(shot.time(before))),
+        Before(shot.camera(before).lens(shape), scene.first_moving, scene.corners_at(shot.time(before))),
     )
 
 

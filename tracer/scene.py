@@ -9,7 +9,7 @@ import numpy as np
 
 from .camera import Camera, CameraPath, vector
 from .errors import SceneError
-from .geometry import Instance, Triangles, corners_of, joined
+from .geometry import Instance, Triangles, corners_of
 from .light_sampling import Lights
 from .lights import PointLight, Sun
 from .materials import Colour, Materials
@@ -81,11 +81,8 @@ class Scene:
         """The scene at `time` in seconds."""
         if self._still is not None:
             return self._still
-        triangles = self._triangles
-        trees = list(self._trees)
-        if self._moving:
-            triangles = joined(triangles, self._gather(self._moving, time))
-            trees += self._grow(self._moving, triangles, len(self._triangles.corners))
+        triangles = self._triangles.moved(self._moving, time) if self._moving else self._triangles
+        trees = [*self._trees, *self._grow(self._moving, triangles, self.first_moving)]
         materials = self._materials._replace(
             emission=np.array([np.multiply(m.emission, m.brightness_at(time)) for m in self._kinds])
         )
@@ -94,10 +91,8 @@ class Scene:
         return Moment(tables, Trees(trees, triangles, materials))
 
     def corners_at(self, time: float) -> Float32:
-        """First corner and edges (T, 3, 3) of the triangles at `time` in seconds, in the order of `at`."""
-        if not self._moving:
-            return self._triangles.corners
-        return np.concatenate([self._triangles.corners, corners_of(self._moving, time)])
+        """First corner and edges (M, 3, 3) of the triangles that move, from `first_moving` on, at `time` in seconds."""
+        return corners_of(self._moving, time)
 
     @property
     def changes(self) -> bool:
@@ -115,7 +110,8 @@ class Scene:
         self._moving = [instance for instance in ordered if instance.motion is not None]
         self._materials = Materials.of(self._kinds)
         self._sky = sky_table(self.sky)
-        self._triangles = self._gather(still, 0.0)
+        self.first_moving = sum(len(instance.corners) for instance in still)
+        self._triangles = self._gather([*still, *self._moving])
         self._trees = self._grow(still, self._triangles, 0)
         self._still: Moment | None = None
         lights_change = any(isinstance(light, PointLight) and light.motion is not None for light in self.lights)
@@ -124,9 +120,9 @@ class Scene:
             tables = Tables(self._triangles, self._materials, lights, self._sky)
             self._still = Moment(tables, Trees(self._trees, self._triangles, self._materials))
 
-    def _gather(self, instances: Sequence[Instance], time: float) -> Triangles:
+    def _gather(self, instances: Sequence[Instance]) -> Triangles:
         ids = [self._id[id(instance)] for instance in instances]
-        return Triangles.of(instances, ids, [self._number[id(i.material)] for i in instances], time)
+        return Triangles.of(instances, ids, [self._number[id(i.material)] for i in instances], 0.0)
 
     def _grow(self, instances: Sequence[Instance], triangles: Triangles, first: int) -> list[Tree]:
         """The trees over `instances`, whose triangles begin at `first` in the table: solid ones, masked ones."""

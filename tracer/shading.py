@@ -34,6 +34,7 @@ from .paths import (
     INDIRECT_DIFFUSE,
     INDIRECT_SPECULAR,
     SPECULAR,
+    Aim,
     Before,
     Draws,
     Features,
@@ -45,21 +46,12 @@ from .sampling import Random4, random4
 from .scene import Tables
 from .trees import FAR, MISS, Hits
 from .vec3 import Vec3, add, dot, multiply, row, scale, to_local, to_world
-from .vectors import Float32, Float64
+from .vectors import Float32
 
 # Random draws of a path: its place in the pixel and the shutter's time, its place on the lens, two at each surface.
 PIXEL_DRAW, LENS_DRAW, FIRST_SURFACE_DRAW = 0, 1, 2
 
 BLACK = (0.0, 0.0, 0.0)
-
-
-@compiled
-def spread(draws: Draws, positions: Float64) -> None:
-    """Move image positions (N, 2) within the pixel's square at random, by [-0.5, 0.5) each way."""
-    for index in range(len(positions)):
-        u = random4(draws.key, draws.pixels[index], draws.sample, PIXEL_DRAW)
-        positions[index, 0] += u[0] - 0.5
-        positions[index, 1] += u[1] - 0.5
 
 
 @compiled
@@ -83,11 +75,18 @@ class Vertex(NamedTuple):
 
 
 @compiled
-def start_paths(lens: Lens, draws: Draws, positions: Float64, scatterings: int, paths: Paths) -> None:
-    """Start a path through each image position (x, y) of `positions` (N, 2)."""
-    for index in range(len(positions)):
-        u = random4(draws.key, draws.pixels[index], draws.sample, LENS_DRAW)
-        origin, direction = ray_through(lens, positions[index, 0], positions[index, 1], u[0], u[1])
+def start_paths(lens: Lens, draws: Draws, aim: Aim, scatterings: int, paths: Paths) -> None:
+    """Start a path through each pixel of `draws`."""
+    u = v = (0.5, 0.5, 0.5, 0.5)
+    for index in range(len(draws.pixels)):
+        pixel = draws.pixels[index]
+        if aim.spread > 0.0:
+            u = random4(draws.key, pixel, draws.sample, PIXEL_DRAW)
+        if lens.radius > 0.0:
+            v = random4(draws.key, pixel, draws.sample, LENS_DRAW)
+        x = pixel % aim.width + aim.x + aim.spread * (u[0] - 0.5)
+        y = pixel // aim.width + aim.y + aim.spread * (u[1] - 0.5)
+        origin, direction = ray_through(lens, x, y, v[0], v[1])
         _put(paths, index, origin, direction, (1.0, 1.0, 1.0), 0.0)
         paths.pixel[index], paths.lobe[index], paths.scatterings[index] = index, DIFFUSE, scatterings
 
@@ -106,18 +105,19 @@ def deposit(light: Float32, rays: ShadowRays, blocked: NDArray[np.bool_], first:
 @compiled
 def sum_up(light: Float32, spp: int, radiance: Radiance) -> None:
     """Sort the kinds of light (N, 5, 3) of so many samples into signals, per sample."""
+    share = 1.0 / spp
     for pixel in range(len(light)):
         for channel in range(3):
             kinds = light[pixel]
             direct_diffuse, direct_specular = kinds[DIRECT_DIFFUSE, channel], kinds[DIRECT_SPECULAR, channel]
             indirect_diffuse, indirect_specular = kinds[INDIRECT_DIFFUSE, channel], kinds[INDIRECT_SPECULAR, channel]
-            direct, indirect = (direct_diffuse + direct_specular) / spp, (indirect_diffuse + indirect_specular) / spp
-            emission = light[pixel, EMISSION, channel] / spp
+            direct, indirect = share * (direct_diffuse + direct_specular), share * (indirect_diffuse + indirect_specular)
+            emission = share * kinds[EMISSION, channel]
             radiance.color[pixel, channel] = direct + indirect + emission
             radiance.direct[pixel, channel] = direct
             radiance.indirect[pixel, channel] = indirect
-            radiance.diffuse[pixel, channel] = (direct_diffuse + indirect_diffuse) / spp
-            radiance.specular[pixel, channel] = (direct_specular + indirect_specular) / spp
+            radiance.diffuse[pixel, channel] = share * (direct_diffuse + indirect_diffuse)
+            radiance.specular[pixel, channel] = share * (direct_specular + indirect_specular)
             radiance.emission[pixel, channel] = emission
 
 

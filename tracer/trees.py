@@ -32,6 +32,11 @@ class Hits(NamedTuple):
     c: Float32
     distance: Float32
 
+    @classmethod
+    def none(cls, distance: Float32) -> Hits:
+        """Nothing met within `distance` (N,) yet."""
+        return cls(np.full(len(distance), MISS, np.int32), np.empty_like(distance), np.empty_like(distance), distance)
+
 
 class Tree:
     """Embree's tree over some neighbouring triangles of a scene.
@@ -92,15 +97,12 @@ class Trees:
 
     def intersect(self, origin: Float32, direction: Float32) -> Hits:
         """The first solid point on each ray from `origin` (N, 3) along the unit vectors `direction` (N, 3)."""
-        count = len(origin)
-        distance = np.full(count, FAR, np.float32)
-        hits = Hits(np.full(count, MISS, np.int32), np.zeros(count, np.float32), np.zeros(count, np.float32), distance)
-        for number, tree in enumerate(self.trees):
-            if number == 0 and not tree.masked:
-                hits = tree.nearest(origin, direction, distance)
-            else:
-                ray = tree.near(origin, direction, hits.distance)
-                self._search(tree, ray, origin[ray], direction[ray], hits)
+        distance = np.full(len(origin), FAR, np.float32)
+        trees = list(self.trees)
+        hits = trees.pop(0).nearest(origin, direction, distance) if not trees[0].masked else Hits.none(distance)
+        for tree in trees:
+            ray = tree.near(origin, direction, hits.distance)
+            self._search(tree, ray, origin[ray], direction[ray], hits)
         return hits
 
     def occluded(self, origin: Float32, direction: Float32, distance: Float32) -> NDArray[np.bool_]:
@@ -114,7 +116,7 @@ class Trees:
             ray = tree.near(origin, direction, distance)
             rays, ahead, reach = origin[ray], direction[ray], distance[ray]
             if tree.masked:
-                hits = Hits(np.full(len(ray), MISS, np.int32), np.empty_like(reach), np.empty_like(reach), reach)
+                hits = Hits.none(reach)
                 self._search(tree, np.arange(len(ray), dtype=np.int32), rays, ahead, hits)
                 result[ray] = hits.triangle != MISS
             else:

@@ -8,7 +8,7 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tracer.geometry import Instance, Triangles, cofactors, corners_of, interpolated, joined, surface_at
+from tracer.geometry import Instance, Triangles, cofactors, corners_of, interpolated, surface_at
 from tracer.materials import Material
 from tracer.motion import Keyframes, Motion, Track
 
@@ -79,8 +79,14 @@ def test_triangles_know_where_they_come_from(floor: Callable[..., Instance]) -> 
     np.testing.assert_array_equal(found.material, [0] * 2 + [7] * len(SMOOTH.corners))
     assert found.instance.dtype == np.uint32
     np.testing.assert_array_equal(found.uv[2:], 0)
-    both = joined(found, found)
-    assert len(both.corners) == len(both.normals) == len(both.uv) == len(both.material) == 2 * len(found.corners)
+
+
+def test_the_last_triangles_move(floor: Callable[..., Instance]) -> None:
+    body = moved(SMOOTH, *Motion.sliding([0.0, 1.0], [(0, 0, 0), (4, 0, 0)]).links)
+    parts = [floor(Material()), body]
+    found = Triangles.of(parts, [1, 2], [0, 0], 0.0).moved([body], 0.5)
+    for values, expected in zip(found, Triangles.of(parts, [1, 2], [0, 0], 0.5), strict=True):
+        np.testing.assert_array_equal(values, expected)
 
 
 def test_triangles_are_kept_as_a_corner_and_two_edges(floor: Callable[..., Instance]) -> None:

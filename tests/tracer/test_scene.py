@@ -91,8 +91,8 @@ def test_triangles_keep_their_numbers_while_they_move(floor: Floor, quad: Quad) 
     scene = Scene([body, floor(Material()), body], sky=WHITE)
     for time, shift in ((0.0, 0.0), (0.5, 2.0), (2.0, 4.0)):
         triangles = scene.at(time).tables.triangles
-        np.testing.assert_array_equal(triangles.corners, scene.corners_at(time))
-        np.testing.assert_array_equal(triangles.corners[:2], scene.corners_at(0.0)[:2])
+        np.testing.assert_array_equal(triangles.corners[scene.first_moving :], scene.corners_at(time))
+        np.testing.assert_array_equal(triangles.corners[:2], scene.at(0.0).tables.triangles.corners[:2])
         np.testing.assert_array_equal(triangles.corners[2:, 0, 0], shift)
         np.testing.assert_array_equal(triangles.instance[:2], 2)
 

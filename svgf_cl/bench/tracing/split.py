@@ -45,7 +45,6 @@ STAGES: dict[str, tuple[tuple[object, str], ...]] = {
     ENDS: (
         (integrator, "start_paths"),
         (integrator, "deposit"),
-        (render, "spread"),
         (render, "pick_moments"),
         (render, "sum_up"),
     ),
