@@ -40,8 +40,8 @@ def compiled(function: Function) -> Function:
 
     It is inlined wherever another compiled function calls it: a scene's tables, hundreds of words, would be copied at
     each call. Without allocation no array needs its references counted, which took most of the time. Arithmetic
-    follows IEEE 754 as written, but a quotient may be the product with a reciprocal, and the sign of zero is not kept: a
-    picture is the same with any number of threads.
+    follows IEEE 754 as written, but a quotient may be the product with a reciprocal, and the sign of zero is not kept:
+    a picture is the same with any number of threads.
     """
     others = vars(numba.config)["CACHE_DIR"]
     vars(numba.config)["CACHE_DIR"] = str(FOLDER)

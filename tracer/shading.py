@@ -111,7 +111,10 @@ def sum_up(light: Float32, spp: int, radiance: Radiance) -> None:
             kinds = light[pixel]
             direct_diffuse, direct_specular = kinds[DIRECT_DIFFUSE, channel], kinds[DIRECT_SPECULAR, channel]
             indirect_diffuse, indirect_specular = kinds[INDIRECT_DIFFUSE, channel], kinds[INDIRECT_SPECULAR, channel]
-            direct, indirect = share * (direct_diffuse + direct_specular), share * (indirect_diffuse + indirect_specular)
+            direct, indirect = (
+                share * (direct_diffuse + direct_specular),
+                share * (indirect_diffuse + indirect_specular),
+            )
             emission = share * kinds[EMISSION, channel]
             radiance.color[pixel, channel] = direct + indirect + emission
             radiance.direct[pixel, channel] = direct
