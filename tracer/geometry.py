@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .boxes import bounds, corners_of_box
 from .compiled import compiled
 from .materials import Material
 from .motion import Motion
@@ -46,10 +48,11 @@ class Instance:
 
     def corners_at(self, time: float) -> NDArray[np.floating]:
         """The corners (T, 3, 3) in the world at `time` in seconds."""
-        if self.motion is None:
-            return self.corners
-        matrix = self.motion.matrix(time)
-        return _product(self.corners, matrix[:3, :3]) + matrix[:3, 3]
+        return self._placed(self.corners, time)
+
+    def box_at(self, time: float) -> Float64:
+        """A box (2, 3) around it in the world at `time` in seconds."""
+        return bounds(self._placed(corners_of_box(self._box), time))
 
     def normals_at(self, time: float) -> NDArray[np.floating]:
         """The normals (T, 3, 3) at the corners in the world at `time` in seconds."""
@@ -60,6 +63,17 @@ class Instance:
         if self.motion is None:
             return self.normals
         return _unit(_product(self.normals, cofactors(self.motion.matrix(time)[:3, :3])))
+
+    @cached_property
+    def _box(self) -> Float64:
+        return bounds(self.corners)
+
+    def _placed(self, points: NDArray[np.floating], time: float) -> NDArray[np.floating]:
+        """Points (..., 3) of its own space in the world."""
+        if self.motion is None:
+            return points
+        matrix = self.motion.matrix(time)
+        return _product(points, matrix[:3, :3]) + matrix[:3, 3]
 
 
 class Triangles(NamedTuple):

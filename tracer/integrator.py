@@ -7,14 +7,17 @@ Embree as a whole; in between compiled loops shade one path after the other.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from .boxes import passing
 from .camera import Lens
 from .paths import DIRECT_DIFFUSE, INDIRECT_DIFFUSE, Aim, Before, Draws, Features, Paths, ShadowRays
 from .scene import Moment
 from .shading import deposit, shade, start_paths
 from .trees import FAR, MISS, Hits, Trees
-from .vectors import Float32
+from .vectors import Float32, Float64
 
 # Surfaces of smooth glass that a path may pass in addition to those it may be scattered at: in and out of two objects.
 GLASS = 4
@@ -42,7 +45,7 @@ def trace(
     (N, 5, 3) float32
         Radiance by `DIRECT_DIFFUSE` and so on.
     """
-    tables, trees = moment
+    tables, trees, goals = moment
     count = len(draws.pixels)
     light = np.zeros((count, 5, 3), np.float32)
     paths, ahead, shadows = Paths.empty(count), Paths.empty(count), ShadowRays.empty(count)
@@ -52,10 +55,12 @@ def trace(
     for depth in range(last + 1):
         if depth == last:
             paths.scatterings.fill(0)  # whatever they still meet, they end there
-        if depth < last or len(tables.lights.lamps) or (depth == 1 and len(features.depth)):
-            hits = trees.intersect(paths.origin, paths.direction)
+        if depth == 1 and len(features.depth):
+            hits = trees.intersect(paths.origin, paths.direction)  # whatever they meet, its distance is a feature
+        elif depth < last or len(tables.lights.lamps):
+            hits = gains(trees, goals, paths)
         else:
-            hits = _escapes(trees, paths)
+            hits = escapes(trees, paths)
         shadow_count, ahead_count = shade(
             tables, lens, before, draws, depth, paths, hits, light, features, shadows, ahead
         )
@@ -69,7 +74,19 @@ def trace(
     return light
 
 
-def _escapes(trees: Trees, paths: Paths) -> Hits:
+def gains(trees: Trees, goals: Sequence[Float64], paths: Paths) -> Hits:
+    """What paths meet; of those that may not be scattered any more, only what may bring light."""
+    if paths.scatterings.all():
+        return trees.intersect(paths.origin, paths.direction)
+    nowhere = np.full(len(paths.pixel), FAR, np.float32)
+    wanted = passing(goals, paths.origin, paths.direction, nowhere) | (paths.scatterings > 0)
+    hits = Hits.none(nowhere)
+    for values, found in zip(hits, trees.intersect(paths.origin[wanted], paths.direction[wanted]), strict=True):
+        values[wanted] = found
+    return hits
+
+
+def escapes(trees: Trees, paths: Paths) -> Hits:
     """Of paths that end wherever they arrive, in a scene without lamps: only whether they leave it."""
     count = len(paths.pixel)
     blocked = trees.occluded(paths.origin, paths.direction, np.full(count, FAR, np.float32))

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .boxes import EVERYWHERE, bounds
 from .camera import Camera, CameraPath, vector
 from .errors import SceneError
 from .geometry import Instance, Triangles, corners_of
@@ -15,7 +16,7 @@ from .lights import PointLight, Sun
 from .materials import Colour, Materials
 from .sky import Environment, SkyTable, sky_table
 from .trees import Tree, Trees
-from .vectors import Float32
+from .vectors import Float32, Float64
 
 
 class Tables(NamedTuple):
@@ -28,10 +29,14 @@ class Tables(NamedTuple):
 
 
 class Moment(NamedTuple):
-    """A scene at one time."""
+    """A scene at one time.
+
+    `goals` are boxes (2, 3): paths that may not be scattered any more bring no light unless they pass one of them.
+    """
 
     tables: Tables
     trees: Trees
+    goals: tuple[Float64, ...]
 
 
 class Scene:
@@ -88,7 +93,7 @@ class Scene:
         )
         lights = Lights.of(triangles, self._kinds, self.lights, self._sky, time)
         tables = Tables(triangles, materials, lights, self._sky)
-        return Moment(tables, Trees(trees, triangles, materials))
+        return Moment(tables, Trees(trees, triangles, materials), self._goals(time))
 
     def corners_at(self, time: float) -> Float32:
         """First corner and edges (M, 3, 3) of the triangles that move, from `first_moving` on, at `time` in seconds."""
@@ -118,7 +123,7 @@ class Scene:
         if not (self._moving or lights_change or any(m.brightness is not None for m in self._kinds)):
             lights = Lights.of(self._triangles, self._kinds, self.lights, self._sky, 0.0)
             tables = Tables(self._triangles, self._materials, lights, self._sky)
-            self._still = Moment(tables, Trees(self._trees, self._triangles, self._materials))
+            self._still = Moment(tables, Trees(self._trees, self._triangles, self._materials), self._goals(0.0))
 
     def _gather(self, instances: Sequence[Instance]) -> Triangles:
         ids = [self._id[id(instance)] for instance in instances]
@@ -134,14 +139,25 @@ class Scene:
             first += count
         return trees
 
+    def _goals(self, time: float) -> tuple[Float64, ...]:
+        """A box for each material that shines or lets light through; everywhere, where light comes from outside."""
+        if self._shines_outside():
+            return (EVERYWHERE,)
+        boxes: dict[int, list[Float64]] = {}
+        for instance in self.instances:
+            if instance.material.transmissive or max(instance.material.emission) > 0.0:
+                boxes.setdefault(id(instance.material), []).append(instance.box_at(time))
+        return tuple(bounds(np.array(each)) for each in boxes.values())
+
     def _shines(self) -> bool:
+        points = [light.intensity for light in self.lights if isinstance(light, PointLight)]
+        lamps = [instance.material.emission for instance in self.instances]
+        return self._shines_outside() or any(max(light) > 0.0 for light in (*points, *lamps))
+
+    def _shines_outside(self) -> bool:
         sky = self.sky.image if isinstance(self.sky, Environment) else self.sky
-        lights = [light.irradiance if isinstance(light, Sun) else light.intensity for light in self.lights]
-        return bool(
-            (sky is not None and np.max(sky) > 0.0)
-            or any(max(light) > 0.0 for light in lights)
-            or any(max(instance.material.emission) > 0.0 for instance in self.instances)
-        )
+        suns = [light.irradiance for light in self.lights if isinstance(light, Sun)]
+        return bool(sky is not None and np.max(sky) > 0.0) or any(max(sun) > 0.0 for sun in suns)
 
 
 def _make(

@@ -10,11 +10,10 @@ from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
-from .camera import vector
+from .boxes import bounds, passing
 from .compiled import compiled
 from .geometry import Triangles, lift, texture_coordinates
 from .materials import Materials, is_solid
-from .vec3 import Vec3
 from .vectors import Float32
 
 MISS = -1
@@ -56,9 +55,7 @@ class Tree:
         self._embree = EmbreeScene()
         vertices = corners.copy()
         vertices[:, 1:] += corners[:, :1]
-        # With room around it: rounding must not lose rays that run along a face of the box.
-        room = 1e-5 * np.abs(vertices).max()
-        self._low, self._high = vector(vertices.min((0, 1)) - room), vector(vertices.max((0, 1)) + room)
+        self._box = bounds(vertices)
         TriangleMesh(self._embree, vertices)
         # Embree builds its tree at the first query: not in several threads at once.
         self.blocked(np.zeros((1, 3), np.float32), np.ones((1, 3), np.float32), np.ones(1, np.float32))
@@ -75,9 +72,7 @@ class Tree:
 
     def near(self, origin: Float32, direction: Float32, distance: Float32) -> NDArray[np.int32]:
         """Which of the rays (N, 3) pass the tree's bounding box within `distance` (N,): few need to ask more of it."""
-        passes = np.empty(len(origin), np.bool_)
-        _pass_box(self._low, self._high, origin, direction, distance, passes)
-        return np.flatnonzero(passes).astype(np.int32)
+        return np.flatnonzero(passing([self._box], origin, direction, distance)).astype(np.int32)
 
 
 class Trees:
@@ -139,21 +134,6 @@ class Trees:
             ray, travelled = ray[passed], travelled[passed] + step
             direction = direction[passed]
             origin = origin[passed] + step[:, None] * direction
-
-
-@compiled
-def _pass_box(
-    low: Vec3, high: Vec3, origin: Float32, direction: Float32, distance: Float32, passes: NDArray[np.bool_]
-) -> None:
-    """Tell of each ray whether it is within a box somewhere along `distance` (N,); without branches, for vectors."""
-    for ray in range(len(origin)):
-        x, y, z = 1.0 / direction[ray, 0], 1.0 / direction[ray, 1], 1.0 / direction[ray, 2]
-        x1, x2 = (low[0] - origin[ray, 0]) * x, (high[0] - origin[ray, 0]) * x
-        y1, y2 = (low[1] - origin[ray, 1]) * y, (high[1] - origin[ray, 1]) * y
-        z1, z2 = (low[2] - origin[ray, 2]) * z, (high[2] - origin[ray, 2]) * z
-        enters = max(max(min(x1, x2), min(y1, y2)), max(min(z1, z2), 0.0))
-        leaves = min(min(max(x1, x2), max(y1, y2)), min(max(z1, z2), distance[ray]))
-        passes[ray] = enters <= leaves
 
 
 @compiled

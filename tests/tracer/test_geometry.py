@@ -81,6 +81,18 @@ def test_triangles_know_where_they_come_from(floor: Callable[..., Instance]) -> 
     np.testing.assert_array_equal(found.uv[2:], 0)
 
 
+@settings(deadline=None)
+@given(matrices, st.floats(0, 1))
+def test_the_box_holds_what_moves(matrix: np.ndarray, time: float) -> None:
+    placed = np.eye(4)
+    placed[:3, :3] = matrix
+    body = moved(SMOOTH, placed, *Motion.sliding([0.0, 1.0], [(0, 0, 0), (4, 0, 0)]).links)
+    low, high = body.box_at(time)
+    corners = body.corners_at(time).reshape(-1, 3)
+    assert (low <= corners.min(0) + 1e-9).all()
+    assert (high >= corners.max(0) - 1e-9).all()
+
+
 def test_the_last_triangles_move(floor: Callable[..., Instance]) -> None:
     body = moved(SMOOTH, *Motion.sliding([0.0, 1.0], [(0, 0, 0), (4, 0, 0)]).links)
     parts = [floor(Material()), body]

@@ -13,14 +13,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from svgf_cl.frame import CHANNELS
 from tests.tracer.estimates import AT_ORIGIN, assert_mean, still, under_rectangle
-from tracer import Camera, CameraPath, Shot, load_scene, render_frame
+from tracer import Camera, CameraPath, Shot, builtin_scene, integrator, load_scene, render_frame
 from tracer.geometry import Instance
 from tracer.lights import PointLight, Sun
 from tracer.materials import Material
 from tracer.motion import Motion
+from tracer.paths import Paths
 from tracer.scene import Scene
 from tracer.sky import Environment
+from tracer.trees import Hits, Trees
 
 CORNELL = Path(__file__).parents[3] / "shared" / "scenes" / "cornell_box"
 
@@ -329,3 +332,22 @@ def test_the_cornell_box_matches_another_renderer() -> None:
     blocks = color.reshape(16, 4, 16, 4, 3).mean((1, 3)) / expected.reshape(16, 16, 16, 16, 3).mean((1, 3))
     assert np.median(blocks) == pytest.approx(1.0, abs=0.01)
     assert np.percentile(np.abs(blocks - 1.0), 90) < 0.06
+
+
+@pytest.mark.parametrize("name", ["cornell", "glossy", "swing", "switch"])
+def test_rays_that_pass_lamps_and_glass_by_bring_nothing(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The frame is the same, to the bit, if all that paths meet is looked for."""
+    shot = Shot(builtin_scene(name), (36, 64), 8)
+    expected = render_frame(shot, 3, spp=2, bounces=2)
+    asked: list[int] = []
+    monkeypatch.setattr(integrator, "gains", lambda trees, goals, paths: every(trees, paths, asked))
+    frame = render_frame(shot, 3, spp=2, bounces=2)
+    assert asked
+    for field in CHANNELS:
+        np.testing.assert_array_equal(getattr(frame, field), getattr(expected, field))
+
+
+def every(trees: Trees, paths: Paths, asked: list[int]) -> Hits:
+    """What all paths meet."""
+    asked.append(len(paths.pixel))
+    return trees.intersect(paths.origin, paths.direction)

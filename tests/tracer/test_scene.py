@@ -97,6 +97,18 @@ def test_triangles_keep_their_numbers_while_they_move(floor: Floor, quad: Quad) 
         np.testing.assert_array_equal(triangles.instance[:2], 2)
 
 
+def test_paths_end_at_lamps_and_glass_unless_light_comes_from_outside(floor: Floor, quad: Quad) -> None:
+    shining = Material(emission=WHITE)
+    lamps = [quad((0, y, 0), (1, 0, 0), (0, 0, 1), shining, SLIDE) for y in (2, 3)]
+    glass = quad((0, 9, 0), (1, 0, 0), (0, 0, 1), Material(transmissive=True))
+    parts = [floor(Material()), *lamps, glass]
+    first, second = Scene(parts).at(0.5).goals
+    np.testing.assert_allclose(first, [(2, 2, 0), (3, 3, 1)])
+    np.testing.assert_allclose(second, [(0, 9, 0), (1, 9, 1)])
+    for light in ({"sky": WHITE}, {"lights": [Sun((0, 1, 0), WHITE)]}):
+        assert np.isinf(Scene(parts, **light).at(0.5).goals).all()
+
+
 def test_brightness_is_that_of_the_time(floor: Floor) -> None:
     scene = Scene([floor(Material(emission=(2, 4, 6), brightness=DIMMED)), floor(Material(emission=WHITE))])
     for time, factor in ((0.0, 1.0), (0.5, 0.75), (3.0, 0.5)):

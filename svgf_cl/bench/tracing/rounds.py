@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from svgf_cl.bench.rig import HOST
-from svgf_cl.bench.tracing.recording import KINDS, THREADS, Query, Recording, share_out
+from svgf_cl.bench.tracing.recording import KINDS, THREADS, Batch, Recording, share_out
 from tracer import Shot, render_frame
 from tracer.vectors import Float32
 
@@ -43,10 +43,10 @@ def embree(kind: str) -> str:
 
 
 def sample_round(shot: Shot, number: int, recording: Recording) -> Iterator[Sample]:
-    """Time the frame once, then the rays recorded of it on all threads and on one."""
+    """Time the frame once, then raw Embree with all of its rays, on all threads and on one."""
     yield from both_clocks(FRAME, THREADS, lambda: render_frame(shot, number))
     for threads in sorted({THREADS, 1}, reverse=True):
-        yield from asked_again(recording, threads)
+        yield from sent_again(recording, threads)
 
 
 def both_clocks(what: str, threads: int, work: Callable[[], object]) -> Iterator[Sample]:
@@ -58,17 +58,17 @@ def both_clocks(what: str, threads: int, work: Callable[[], object]) -> Iterator
     yield Sample(what, threads, CPU, end_cpu - begin_cpu)
 
 
-def asked_again(recording: Recording, threads: int) -> Iterator[Sample]:
-    """Have Embree do all of a frame's calls again, on so many threads; each kind's time is its part of the whole."""
+def sent_again(recording: Recording, threads: int) -> Iterator[Sample]:
+    """Send all of a frame's rays to Embree, on so many threads; each kind's time is its part of the whole."""
     spent: dict[str, list[float]] = defaultdict(list)
 
-    def ask(job: tuple[Query, Float32]) -> None:
-        query, distance = job
+    def ask(job: tuple[Batch, Float32]) -> None:
+        batch, distance = job
         begin = time.perf_counter()
-        query.ask(query.origin, query.direction, distance)
-        spent[query.kind].append(time.perf_counter() - begin)
+        batch.ask(batch.origin, batch.direction, distance)
+        spent[batch.kind].append(time.perf_counter() - begin)
 
-    jobs = [(query, query.distance.copy()) for query in recording.asked]
+    jobs = [(batch, batch.distance.copy()) for batch in recording.sent]
     yield from both_clocks(EMBREE, threads, lambda: share_out(ask, jobs, threads))
     for kind in KINDS:
         yield Sample(embree(kind), threads, HOST, sum(spent[kind]) / threads)

@@ -85,9 +85,9 @@ def sampled(shot: Shot, recording: Recording, rounds: int, advance: Callable[[],
 
 
 def counts(recording: Recording) -> dict[str, dict[str, int]]:
-    """How many rays the tracer sent and how many Embree was asked for, by what is timed."""
-    found = {embree(kind): {"rays": recording.rays(kind), "queries": recording.queries(kind)} for kind in KINDS}
-    return found | {EMBREE: {name: sum(each[name] for each in found.values()) for name in ("rays", "queries")}}
+    """How many rays the tracer sent and how many it asked Embree for, by what is timed."""
+    found = {embree(kind): {"rays": recording.rays(kind), "asked": recording.asked[kind]} for kind in KINDS}
+    return found | {EMBREE: {name: sum(each[name] for each in found.values()) for name in ("rays", "asked")}}
 
 
 def frame_results(

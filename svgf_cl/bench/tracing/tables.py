@@ -30,7 +30,7 @@ def frame_table(results: Results) -> Table:
     shown = (f"{value:{spec}}" for value, spec in zip(errors, (".3f", ".2f", ".3g"), strict=True))
     rows = [("frame", str(threads), *timed(results, FRAME, threads), *shown)]
     for count in sorted({threads, 1}, reverse=True):
-        rows.append(("its rays, raw Embree", str(count), *timed(results, EMBREE, count), "", "", ""))
+        rows.append(("all its rays, raw Embree", str(count), *timed(results, EMBREE, count), "", "", ""))
     title = f"{frame.device}, {facts['width']}x{facts['height']}, 1 sample per pixel: medians, ratios with 10 % - 90 %"
     times = ("wall ms", "over raw Embree", "CPU ms", "over raw Embree")
     return Table(title, ("", "threads", *times, "relMSE ↓", "PSNR dB ↑", "1 / (relMSE s) ↑"), rows)
@@ -53,20 +53,21 @@ def ratio(slow: Result, fast: Result) -> str:
 def ray_table(results: Results) -> Table:
     """How many rays of each kind, and how fast Embree is at them by itself."""
     threads = find(results, stage=f"tracer {FRAME}").facts["threads"]
-    columns = ("rays", "sent", "asked of Embree", "Mray/s, 1 thread", f"Mray/s, {threads} threads", "times faster")
+    speeds = ("Mray/s, 1 thread", f"Mray/s, {threads} threads", "times faster")
+    columns = ("rays", "sent", "asked of Embree in the frame", *speeds)
     stages = {kind: embree(kind) for kind in KINDS} | {"all": EMBREE}
     rows = [
         (name, *ray_row(*(find(results, stage=f"tracer {stage}", threads=n, clock=HOST) for n in (1, threads))))
         for name, stage in stages.items()
     ]
-    return Table("rays of that frame, and how fast raw Embree answers", columns, rows)
+    return Table("rays of that frame, and how fast raw Embree answers all of them in one tree", columns, rows)
 
 
 def ray_row(one: Result, every: Result) -> tuple[str, ...]:
     """Counts and speeds of one kind, from the times on one thread and on all; no speed where there are no such rays."""
-    rays, queries = one.facts["rays"], one.facts["queries"]
-    speeds = [f"{1e-6 * queries / each.median:.2f}" for each in (one, every)] if queries else ["", ""]
-    return f"{rays:,}", f"{queries:,}", *speeds, f"{one.median / every.median:.2f}" if queries else ""
+    rays, asked = one.facts["rays"], one.facts["asked"]
+    speeds = [f"{1e-6 * rays / each.median:.2f}" for each in (one, every)] if rays else ["", ""]
+    return f"{rays:,}", f"{asked:,}", *speeds, f"{one.median / every.median:.2f}" if rays else ""
 
 
 def split_table(results: Results) -> Table:

@@ -24,7 +24,7 @@ def tracer_results(frame_ms: float = 300.0, embree_ms: float = 200.0) -> tuple[R
     samples[FRAME, THREADS, HOST] = [1e-3 * frame_ms, 2e-3 * frame_ms]
     samples[FRAME, THREADS, CPU] = [1e-3 * frame_ms * THREADS] * 2
     samples.update({(f"split {part}", THREADS, CPU): [1e-2, 1e-2] for part in PARTS})
-    facts = {embree(kind): {"rays": 1_000_000, "queries": 2_000_000} for kind in KINDS}
-    facts |= {EMBREE: {"rays": 3_000_000, "queries": 6_000_000}, FRAME: {"relmse": 0.5, "psnr": 19.0}}
+    facts = {embree(kind): {"rays": 1_000_000, "asked": 2_000_000} for kind in KINDS}
+    facts |= {EMBREE: {"rays": 3_000_000, "asked": 6_000_000}, FRAME: {"relmse": 0.5, "psnr": 19.0}}
     device = "tracer: box"
     return *frame_results(device, (720, 1280), samples, facts), *start_results(device, [COLD, WARM, WARM])

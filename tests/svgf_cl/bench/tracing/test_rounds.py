@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from svgf_cl.bench.rig import HOST
-from svgf_cl.bench.tracing.recording import KINDS, PRIMARY, SHADOW, THREADS, Query, Recording
-from svgf_cl.bench.tracing.rounds import CPU, EMBREE, FRAME, asked_again, embree, sample_round
+from svgf_cl.bench.tracing.recording import KINDS, PRIMARY, SHADOW, THREADS, Batch, Recording
+from svgf_cl.bench.tracing.rounds import CPU, EMBREE, FRAME, embree, sample_round, sent_again
 from tracer import Shot
 from tracer.vectors import Float32
 
@@ -26,7 +26,7 @@ def test_what_a_round_times(shot: Shot, recording: Recording) -> None:
 
 
 @pytest.mark.parametrize("threads", [1, 2])
-def test_all_is_asked_again_with_the_distances_of_the_first_time(threads: int) -> None:
+def test_all_is_sent_again_with_the_distances_of_the_first_time(threads: int) -> None:
     asked = []
 
     def ask(origin: Float32, direction: Float32, distance: Float32) -> None:
@@ -34,10 +34,10 @@ def test_all_is_asked_again_with_the_distances_of_the_first_time(threads: int) -
         distance[:] = -1.0  # as Embree does
 
     rays = np.zeros((3, 3), np.float32), np.ones((3, 3), np.float32)
-    queries = tuple(
-        Query(kind, ask, *rays, np.full(3, reach, np.float32)) for kind, reach in ((PRIMARY, 5), (SHADOW, 7))
+    batches = tuple(
+        Batch(kind, ask, *rays, np.full(3, reach, np.float32)) for kind, reach in ((PRIMARY, 5), (SHADOW, 7))
     )
     for _ in range(2):
-        names = [sample.what for sample in asked_again(Recording((), queries, ()), threads)]
+        names = [sample.what for sample in sent_again(Recording(batches, {}, ()), threads)]
     assert sorted(asked) == [(3, 5.0), (3, 5.0), (3, 7.0), (3, 7.0)]
     assert names == [EMBREE, EMBREE, *(embree(kind) for kind in KINDS)]
