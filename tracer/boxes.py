@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from .compiled import compiled
 from .vectors import Float32, Float64
 
+TINY = 1e-30
+
 # Around what may be anywhere.
 EVERYWHERE = np.array([[-np.inf] * 3, [np.inf] * 3])
 
@@ -41,7 +43,10 @@ def _mark(
 ) -> None:
     """Mark the rays that pass one box; without branches, for vectors."""
     for ray in range(len(origin)):
-        x, y, z = 1.0 / direction[ray, 0], 1.0 / direction[ray, 1], 1.0 / direction[ray, 2]
+        # Along a face of the box 0 / 0 would be neither in front of it nor behind.
+        x = 1.0 / (direction[ray, 0] + TINY)
+        y = 1.0 / (direction[ray, 1] + TINY)
+        z = 1.0 / (direction[ray, 2] + TINY)
         x1, x2 = (low[0] - origin[ray, 0]) * x, (high[0] - origin[ray, 0]) * x
         y1, y2 = (low[1] - origin[ray, 1]) * y, (high[1] - origin[ray, 1]) * y
         z1, z2 = (low[2] - origin[ray, 2]) * z, (high[2] - origin[ray, 2]) * z

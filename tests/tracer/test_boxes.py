@@ -10,6 +10,9 @@ from hypothesis import strategies as st
 from tracer.boxes import EVERYWHERE, bounds, corners_of_box, passing
 from tracer.trees import FAR
 
+# More than single precision moves the end of a ray by that is so long.
+ROOM = 1e-2
+
 UNIT = np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]])
 
 places = st.tuples(*[st.floats(-1e3, 1e3, width=32)] * 3)
@@ -28,8 +31,8 @@ def test_a_ray_to_a_point_inside_passes(points: list, origin: tuple, number: int
     length = np.linalg.norm(way)
     if length < 1e-2:
         return
-    box = bounds(np.array(points))
-    assert passes(box, origin, way / length, length * (1.0 + 1e-5) + 1e-2)
+    box = bounds(np.array(points)) + [[-ROOM], [ROOM]]
+    assert passes(box, origin, way / length, length * (1.0 + 1e-5) + ROOM)
 
 
 @pytest.mark.parametrize(
@@ -71,3 +74,9 @@ def test_corners_span_their_box() -> None:
     corners = corners_of_box(np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]))
     assert len(np.unique(corners, axis=0)) == 8
     np.testing.assert_array_equal(bounds(corners), [(1, 2, 3), (4, 5, 6)])
+
+
+def test_a_ray_along_a_face_passes() -> None:
+    box = np.array([[-1.0, -1.0, -1.0], [1.0, 0.0, 1.0]])
+    assert passes(box, (-3, 1e-5, 0), (1, 0, 0))
+    assert passes(box, (-3, 0, 0), (1, 0, 0))
