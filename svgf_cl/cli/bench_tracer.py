@@ -30,7 +30,7 @@ def tracer(
 ) -> None:
     """Time the path tracer against raw Embree, and say what its time and memory go to.
 
-    A frame of 1 sample per pixel with its G-buffer, motion, one bounce and shadow rays is rendered, and its very rays
+    A frame of 1 sample per pixel with its G-buffer, motion, one bounce and shadow rays is rendered, and all its rays
     are traced again by Embree alone, in turns. New processes tell start and memory, a reference the noise.
 
     \b
