@@ -100,10 +100,12 @@ def depth_gradient(depth: Array) -> Array:
 
 def slope_along(axis: Offset, depth: Array) -> Array:
     """One component of g, (H, W)."""
-    forward = difference(axis, depth)
-    backward = -difference((-axis[0], -axis[1]), depth)
+    ahead = difference(axis, depth)
+    behind = -difference((-axis[0], -axis[1]), depth)
+    forward = np.where(np.isfinite(ahead), ahead, behind)
+    backward = np.where(np.isfinite(behind), behind, ahead)
     smaller = np.where(np.abs(forward) <= np.abs(backward), forward, backward)
-    return np.where(np.isfinite(smaller), smaller, 0)
+    return np.where(np.isfinite(smaller) & (forward * backward > 0), smaller, 0)
 
 
 def difference(offset: Offset, depth: Array) -> Array:

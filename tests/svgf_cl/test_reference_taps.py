@@ -21,7 +21,8 @@ class TestGradient:
         ("depth", "expected"),
         [
             ((1, 2, 9, 10), (1, 1, 1, 1)),  # refuses the edge between 2 and 9
-            ((1, 3, 1, 0), (2, -2, -2, 0)),  # a tie goes forward; no difference to a miss
+            ((1, 3, 1, 0), (2, 0, -2, 0)),  # neither way from a peak; no difference to a miss
+            ((4, 3, 1, 5), (-1, -1, 0, 4)),
             ((0, 5, 0, 4), (0, 0, 0, 0)),  # alone
         ],
     )
