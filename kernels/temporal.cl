@@ -9,7 +9,6 @@
 // Schied et al. 2017, sections 4.1 and 4.2. M and V are the paper's raw moments rewritten (M = mu1, V = mu2 - mu1^2) so
 // that nothing cancels for bright, steady pixels.
 
-#define MAX_LENGTH 1024.0f
 #define FAR 1e6f           // a motion out of every image, yet a safe integer
 #define NOWHERE (1 << 24)  // a position beyond every image
 #define SMOOTH 4           // pixels by which motion may differ within a vector that is read as a whole

@@ -39,7 +39,7 @@ ALBEDO_FLOOR = 0.001
 ILLUMINATION_MAX = {False: 1e15, True: 65504.0}
 MOTION_MAX = 1e6
 NO_HISTORY = (-MOTION_MAX, -MOTION_MAX, 0.0)
-LENGTH_MAX = 1024
+LENGTH_MAX = {False: 1024, True: 32}
 # By radius: of B3, and linear.
 SPLINES = {2: {-2: 1 / 16, -1: 1 / 4, 0: 3 / 8, 1: 1 / 4, 2: 1 / 16}, 1: {-1: 1 / 4, 0: 1 / 2, 1: 1 / 4}}
 YCOCG_OF_RGB = np.array(((1 / 4, 1 / 2, 1 / 4), (1 / 2, 0, -1 / 2), (-1 / 4, 1 / 2, -1 / 4)))
@@ -204,7 +204,7 @@ def temporal(illumination: Array, guides: Guides, history: History | None, setti
     if history is None:
         return fresh
     past, found = reproject(guides, history, settings)
-    length = np.minimum(past.length + 1, LENGTH_MAX)
+    length = np.minimum(past.length + 1, LENGTH_MAX[settings.half_history])
     alpha_color = np.maximum(1 / length, settings.alpha_color)
     alpha_moments = np.maximum(1 / length, settings.alpha_moments)
     innovation = sample - past.mean

@@ -75,8 +75,9 @@ class Settings:
         Keep normals as 16-bit whole numbers: 6 of the guide's 16 bytes less a pixel, an error of 2^-16. Off: no faster
         on a CPU, where the time saved on memory is spent on converting.
     half_history : bool
-        Keep illumination, its history and its moments as 16-bit floats: half their memory, an error of 2^-12, and no
-        illumination above 65504. Off: no faster on a CPU.
+        Keep illumination, its history and its moments as 16-bit floats: half their memory, an error of 2^-12, of light
+        that stands still up to 2^-11 / alpha_color (or 2^-6: an alpha below 1/32 counts as that), and no illumination
+        above 65504. Off: no faster on a CPU.
     """
 
     iterations: int = 5

@@ -26,8 +26,8 @@ BOUNDS = [
     (GUIDES, 2e-3),
     (HISTORY, 2e-3),
     (GUIDES | HISTORY, 3e-3),
-    (FAST, 3e-2),
-    (FAST | GUIDES | HISTORY, 3e-2),
+    (FAST, 4e-2),
+    (FAST | GUIDES | HISTORY, 4e-2),
 ]
 
 

@@ -49,8 +49,10 @@ def test_static_history_grows_by_one_a_frame(count: int) -> None:
     assert_array_equal(lengths(*[wall()] * count), count)
 
 
-def test_history_length_stops_at_1024() -> None:
-    assert_array_equal(lengths(*[wall((1, 1))] * 1026), 1024)
+@pytest.mark.parametrize(("half", "most"), [(False, 1024), (True, 32)])
+def test_history_length_stops(half: bool, most: int) -> None:
+    _, den = feed(*[wall((1, 1))] * (most + 2), half_history=half)
+    assert_array_equal(den.stage("history_length"), most)
 
 
 def test_alpha_zero_converges_to_the_mean_and_its_variance() -> None:
