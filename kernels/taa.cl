@@ -8,6 +8,8 @@
 // bright sample cannot outweigh its neighbours. It goes by Y, not by luminance: the clamp bounds Y, so the inverse cannot
 // make a firefly of two colours.
 
+#define NEARER 0.9999f
+
 typedef struct {
     floatv channel[3];  // Y, Co, Cg
 } Tone;
@@ -38,7 +40,8 @@ typedef struct {
 } Position;
 
 // The nearest surface in the 3x3 neighbourhood: a pixel beside an edge moves with the edge; with its own motion it would
-// fetch, and keep, what the edge covered a frame ago.
+// fetch, and keep, what the edge covered a frame ago. Nearly the same depth is the same: rounding shall not choose between the
+// pixels of a wall.
 INLINE Position foremost(const int4 size, int x, int y, __global const float *depth) {
     const int here = at(size, x, y);
     floatv nearest = load(depth + here);
@@ -49,7 +52,7 @@ INLINE Position foremost(const int4 size, int x, int y, __global const float *de
     for (int dy = -1; dy <= 1; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) {
             const floatv z = load(depth + here + dy * size.z + dx);  // 0 outside the image
-            const intv nearer = (z > 0.0f) & (z < nearest);
+            const intv nearer = (z > 0.0f) & (z < NEARER * nearest);
             nearest = where(nearer, z, nearest);
             p.column = select(p.column, x + dx + LANES, nearer);
             p.row = select(p.row, (intv)(y + dy), nearer);

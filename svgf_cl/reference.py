@@ -39,6 +39,7 @@ ALBEDO_FLOOR = 0.001
 ILLUMINATION_MAX = {False: 1e15, True: 65504.0}
 MOTION_MAX = 1e6
 NO_HISTORY = (-MOTION_MAX, -MOTION_MAX, 0.0)
+NEARER = float(np.float32(0.9999))
 LENGTH_MAX = {False: 1024, True: 32}
 # By radius: of B3, and linear.
 SPLINES = {2: {-2: 1 / 16, -1: 1 / 4, 0: 3 / 8, 1: 1 / 4, 2: 1 / 16}, 1: {-1: 1 / 4, 0: 1 / 2, 1: 1 / 4}}
@@ -296,7 +297,7 @@ def foremost(guides: Guides) -> tuple[Indices, Indices]:
     nearest = np.where(guides.hit, guides.depth, np.inf)
     for offset in square(1):
         y, x, inside = shifted(offset, guides.depth.shape)
-        nearer = inside & guides.hit[y, x] & (guides.depth[y, x] < nearest)
+        nearer = inside & guides.hit[y, x] & (guides.depth[y, x] < NEARER * nearest)
         nearest = np.where(nearer, guides.depth[y, x], nearest)
         rows, columns = np.where(nearer, y, rows), np.where(nearer, x, columns)
     return rows, columns

@@ -90,7 +90,7 @@ class Variant:
 
 # float32 rounds by 2^-24, 16-bit floats by 2^-11 at most, normals by 2^-16; fast weights are up to 6 % larger.
 PRECISE = {"rounding": 1e-6, "error": 1e-4}
-HALVES = {"rounding": 1e-3, "error": 5e-2, "greatest": 65504.0, "least": 2.0**-24}
+HALVES = {"rounding": 1e-3, "error": 1e-1, "greatest": 65504.0, "least": 2.0**-24}
 FAST = {"rounding": 1e-6, "error": 1e-1}
 
 VARIANTS = {
