@@ -1,6 +1,7 @@
 """The demo: the built-in scene rendered at 1 sample per pixel, denoised as it comes, and held against references.
 
-Every step leaves its result in files and the next one reads them there::
+Every step leaves its result in files and the next one reads them there; what a run that was broken off has left is kept
+where it is what this one would write::
 
     noisy/frame.0000.exr ...        what the tracer rendered, with its G-buffer
     filtered/frame.0000.exr ...     SVGF alone
@@ -23,10 +24,18 @@ import tracer
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.display import Bytes, to_bytes, write_image
 from svgf_cl.files import make_folder
-from svgf_cl.frame import Shape
+from svgf_cl.frame import Frame, Shape
 from svgf_cl.metrics import Metrics, measure
 from svgf_cl.pictures import still, write_preview
-from svgf_cl.sequence import check_leftovers, frame_path, read_picture, write_frame, write_picture
+from svgf_cl.sequence import (
+    check_leftovers,
+    frame_path,
+    is_picture,
+    kept_frame,
+    read_picture,
+    write_frame,
+    write_picture,
+)
 from svgf_cl.settings import Settings
 from tracer.references import CHUNK, chunks
 
@@ -88,11 +97,21 @@ class Demo:
         """Render, denoise and write one frame after the other; yield the milliseconds of each pass."""
         for kind in ("noisy", "filtered", "denoised"):
             make_folder(self.folder / kind)
-        for number, frame in enumerate(tracer.render_sequence(self.shot)):
-            write_frame(self.path("noisy", number), frame)
-            write_picture(self.path("denoised", number), denoiser.denoise(frame))
-            write_picture(self.path("filtered", number), denoiser.stage("modulated"))
+        for number in range(self.frames):
+            pictures = {"denoised": denoiser.denoise(self._noisy(number)), "filtered": denoiser.stage("modulated")}
+            for kind, picture in pictures.items():
+                if not is_picture(self.path(kind, number), picture):
+                    write_picture(self.path(kind, number), picture)
             yield denoiser.profile()
+
+    def _noisy(self, number: int) -> Frame:
+        """The frame that an earlier run has rendered; where there is none, it is rendered and written now."""
+        path, made_from = self.path("noisy", number), tracer.frame_identity(self.shot, number)
+        frame = kept_frame(path, made_from)
+        if frame is None:
+            frame = tracer.render_frame(self.shot, number)
+            write_frame(path, frame, made_from)
+        return frame
 
     def render_references(self, advance: Callable[[], None]) -> None:
         """Render the references of the compared frames; `advance` is called `chunks` times for each of them."""

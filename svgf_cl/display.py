@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-import OpenImageIO as oiio  # noqa: N813  # its documentation calls it so
+from PIL import Image
 
-from svgf_cl.errors import SequenceError
 from svgf_cl.files import written_whole
 
 Linear = npt.NDArray[np.floating]
@@ -18,6 +18,7 @@ Bytes = npt.NDArray[np.uint8]
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 MIDDLE_GREY = 0.18
 BLOCK = 8  # pixels
+QUALITY = 90  # of a WebP: it hides nothing; PNG ignores it
 
 
 def display(linear: Linear, exposure: float = 0.0) -> npt.NDArray[np.float64]:
@@ -67,10 +68,8 @@ def to_bytes(linear: Linear, exposure: float = 0.0) -> Bytes:
 
 def write_image(path: Path, picture: Bytes) -> None:
     """Write a (H, W, 3) 8-bit picture, whole or not at all; the suffix says how, such as .png or .webp."""
-    height, width, channels = picture.shape
-    spec = oiio.ImageSpec(width, height, channels, "uint8")
-    spec.attribute("Compression", "webp:90")  # of a quality that hides nothing; PNG ignores it
-    image = oiio.ImageBuf(spec)
+    # Encoded in memory: OpenImageIO says nothing of a full disk where it writes PNG, and never ends where it writes WebP.
+    encoded = io.BytesIO()
     with written_whole(path) as aside:
-        if not (image.set_pixels(image.roi, picture) and image.write(str(aside), fileformat=path.suffix[1:])):
-            raise SequenceError(f"{path}: cannot be written ({image.geterror()})")
+        Image.fromarray(picture).save(encoded, format=path.suffix[1:], quality=QUALITY)
+        aside.write_bytes(encoded.getbuffer())

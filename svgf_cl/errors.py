@@ -23,3 +23,8 @@ class DeviceError(SvgfError):
 
 class SequenceError(SvgfError):
     """A file of a sequence is missing, unreadable or does not fit the others."""
+
+
+def one_line(message: object) -> str:
+    """`message` without its line breaks: what libraries say goes into errors that are one line."""
+    return " ".join(str(message).split())

@@ -1,11 +1,16 @@
-"""Files that are written whole or not at all, and the folders they lie in."""
+"""Files that are written whole or not at all, the folders they lie in, and what can be wrong with either."""
 
 from __future__ import annotations
 
+import contextlib
+import json
 import os
+import re
+import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from svgf_cl.errors import SequenceError
 
@@ -14,28 +19,109 @@ from svgf_cl.errors import SequenceError
 def written_whole(path: Path) -> Iterator[Path]:
     """Yield a name beside `path` to write to; the file becomes `path` when the block ends, and is gone if it raises.
 
+    A process that is killed leaves its file under a name that nothing reads, ``.NAME.HOST-PROCESS.tmp``, and what was
+    at `path` before; `make_folder` deletes it.
+
     Raises
     ------
     SequenceError
         Where the file cannot be written; it names `path` and the system's reason.
     """
-    aside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    aside = path.with_name(f".{path.name}.{socket.gethostname()}-{os.getpid()}.tmp")
     try:
         yield aside
+        _sync(aside)
         os.replace(aside, path)
     except OSError as error:
         raise SequenceError(f"{path}: cannot be written ({error.strerror or error})") from error
     finally:
-        if aside.exists():
+        with contextlib.suppress(OSError):  # there never was one, or it is `path` now
             aside.unlink()
 
 
 def make_folder(path: Path) -> Path:
-    """Make the folder `path`, parents too, where it is not there yet; `SequenceError` where that is impossible."""
+    """Make the folder `path`, parents too, where it is not there yet, and clear it of what killed processes left.
+
+    Raises
+    ------
+    SequenceError
+        Where that is impossible, or the folder is read-only.
+    """
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise SequenceError(f"{path}: cannot be made a folder for the output ({error.strerror})") from error
     if not os.access(path, os.W_OK | os.X_OK):
         raise SequenceError(f"{path}: expected a folder that can be written to, got one that is read-only")
+    _delete_leftovers(path)
     return path
+
+
+def require(path: Path) -> None:
+    """Raise `SequenceError` unless there is something at `path` that this user may look at."""
+    try:
+        path.stat()
+    except FileNotFoundError as error:
+        raise SequenceError(f"{path}: expected a file or a folder, found nothing there") from error
+    except OSError as error:
+        raise unreadable(path, error) from error
+
+
+def entries(folder: Path) -> list[Path]:
+    """What is in `folder`; `SequenceError` where it cannot be read."""
+    try:
+        return list(folder.iterdir())
+    except OSError as error:
+        raise unreadable(folder, error) from error
+
+
+def unreadable(path: Path, error: OSError) -> SequenceError:
+    """Make the error for a file or folder that is there but cannot be read."""
+    return SequenceError(f"{path}: cannot be read ({error.strerror or error})")
+
+
+def read_json(path: Path) -> Any:
+    """Read a JSON file that anyone may have damaged.
+
+    Raises
+    ------
+    OSError
+        It cannot be read.
+    ValueError
+        It is no JSON, or nested so deeply that nobody meant it.
+    """
+    try:
+        return json.loads(path.read_bytes())
+    except RecursionError as error:
+        raise ValueError("nested too deeply") from error
+
+
+def _sync(path: Path) -> None:
+    """Wait until the file is on the disk: only then is it known that there was room, and is it whole after a crash."""
+    descriptor = os.open(path, os.O_RDWR)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _delete_leftovers(folder: Path) -> None:
+    """Delete what processes of this machine were writing to `folder` when they were killed."""
+    left = re.compile(rf"\..+\.{re.escape(socket.gethostname())}-(\d{{1,9}})\.tmp")
+    for path in folder.iterdir():
+        match = left.fullmatch(path.name)
+        if match and not _is_running(int(match[1])):
+            path.unlink(missing_ok=True)
+
+
+def _is_running(process: int) -> bool:
+    """Whether there is a process of that number; where that cannot be asked for, there may be."""
+    if os.name != "posix":
+        return True
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:  # another user's
+        return True
+    return True

@@ -13,13 +13,11 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-import OpenImageIO as oiio  # noqa: N813  # its documentation calls it so
 
 from svgf_cl.errors import FrameError, SequenceError
-from svgf_cl.files import written_whole
+from svgf_cl.exr import Plane, read_attribute, read_channels, write_channels
+from svgf_cl.files import entries, require
 from svgf_cl.frame import REQUIRED, Frame, extent
-
-Plane = npt.NDArray[np.float32]
 
 # Channels of each field, in the order of its components; a third motion component may be missing.
 CHANNEL_NAMES: dict[str, tuple[str, ...]] = {
@@ -35,7 +33,8 @@ CHANNEL_NAMES: dict[str, tuple[str, ...]] = {
     "hit_distance": ("hit_distance.diffuse", "hit_distance.specular"),
 }
 MAX_ID = 2**24
-NUMBERED = re.compile(r"(frame|reference)\.\d+\.exr|still\.\d+\.png")
+MADE_FROM = "svgf_cl:made_from"  # the attribute that tells what a frame was made from
+NUMBERED = re.compile(r"(frame|reference)\.\d+\.exr|(frame|still)\.\d+\.png")
 
 
 def frame_path(folder: Path, number: int, stem: str = "frame") -> Path:
@@ -52,7 +51,7 @@ def frame_number(path: Path) -> int | None:
 def find_numbered(folder: Path, stem: str) -> list[Path]:
     """Find every ``stem.NUMBER.exr`` in `folder`, sorted by number."""
     name = re.compile(re.escape(stem) + r"\.(\d+)\.exr")
-    found = [(int(match[1]), path) for path in folder.iterdir() if (match := name.fullmatch(path.name))]
+    found = [(int(match[1]), path) for path in entries(folder) if (match := name.fullmatch(path.name))]
     return [path for _, path in sorted(found)]
 
 
@@ -87,19 +86,20 @@ def check_gaps(files: Sequence[Path]) -> None:
 
 def check_leftovers(folder: Path, written: Collection[Path]) -> None:
     """Raise `SequenceError` where pictures of an earlier run would stay in `folder` and pass for a part of this one."""
-    for path in sorted(folder.iterdir() if folder.is_dir() else []):
+    for path in sorted(entries(folder) if folder.is_dir() else []):
         if NUMBERED.fullmatch(path.name) and path not in written:
             raise SequenceError(f"{path}: left by an earlier run of other length; delete it, or choose another folder")
 
 
-def require(path: Path) -> None:
-    """Raise `SequenceError` unless there is something at `path`."""
-    if not path.exists():
-        raise SequenceError(f"{path}: expected a file or a folder, found nothing there")
-
-
-def write_frame(path: Path, frame: Frame) -> None:
+def write_frame(path: Path, frame: Frame, made_from: str = "") -> None:
     """Write a frame of numpy arrays as one EXR file, whole or not at all.
+
+    Parameters
+    ----------
+    path : Path
+    frame : Frame
+    made_from : str
+        What stands for all that the frame depends on, for `kept_frame` to know it by.
 
     Raises
     ------
@@ -108,7 +108,23 @@ def write_frame(path: Path, frame: Frame) -> None:
     SequenceError
         Where an id is greater than 2**24, or the file cannot be written.
     """
-    write_channels(path, channels_of(path, frame))
+    write_channels(path, channels_of(path, frame), {MADE_FROM: made_from} if made_from else {})
+
+
+def kept_frame(path: Path, made_from: str) -> Frame | None:
+    """Read the frame that an earlier run made from the same and wrote whole; None where there is no such file."""
+    try:
+        return read_frame(path) if read_attribute(path, MADE_FROM) == made_from else None
+    except SequenceError:
+        return None
+
+
+def is_picture(path: Path, picture: Plane) -> bool:
+    """Whether the file at `path` holds this (H, W, 3) picture, bit by bit."""
+    try:
+        return read_picture(path).tobytes() == picture.tobytes()
+    except SequenceError:
+        return False
 
 
 def channels_of(path: Path, frame: Frame) -> dict[str, Plane]:
@@ -217,31 +233,3 @@ def whole_numbers(path: Path, plane: Plane) -> npt.NDArray[np.uint32]:
 def absent(path: Path, names: Sequence[str], planes: Mapping[str, Plane]) -> SequenceError:
     """Make the error for channels that are not there; it lists those that are."""
     return SequenceError(f"{path}: expected channels {' '.join(names)}, found {' '.join(planes)}")
-
-
-def write_channels(path: Path, planes: Mapping[str, Plane], attributes: Mapping[str, int | float | str] = {}) -> None:
-    """Write (H, W) float32 planes as the channels of one EXR file with such attributes, whole or not at all."""
-    pixels = np.ascontiguousarray(np.stack(list(planes.values()), axis=-1))
-    height, width, count = pixels.shape
-    spec = oiio.ImageSpec(width, height, count, "float")
-    spec.channelnames = tuple(planes)
-    for name, value in {**attributes, "compression": "zip"}.items():
-        spec.attribute(name, value)
-    with written_whole(path) as aside:
-        image = oiio.ImageBuf(spec)
-        if not (image.set_pixels(spec.roi, pixels) and image.write(str(aside), fileformat="openexr")):
-            raise SequenceError(f"{path}: cannot be written ({image.geterror()})")
-
-
-def read_channels(path: Path) -> dict[str, Plane]:
-    """Read every channel of an EXR file as a (H, W) float32 plane, by name."""
-    require(path)
-    source = oiio.ImageInput.open(str(path))
-    if source is None or source.format_name() != "openexr":
-        got = f"the format {source.format_name()}" if source else oiio.geterror()
-        raise SequenceError(f"{path}: expected an OpenEXR file, got {got}")
-    pixels = source.read_image(0, 0, 0, source.spec().nchannels, "float")
-    if pixels is None:
-        raise SequenceError(f"{path}: expected a whole OpenEXR file, got a damaged one ({source.geterror()})")
-    names = source.spec().channelnames
-    return {name: np.ascontiguousarray(pixels[..., index]) for index, name in enumerate(names)}

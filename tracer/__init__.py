@@ -6,7 +6,7 @@ from .errors import SceneError
 from .loading import load_scene
 from .panorama import load_environment
 from .references import Goal, References
-from .render import render_frame, render_sequence
+from .render import frame_identity, render_frame, render_sequence
 from .scene import Scene
 from .scheduling import scheduled
 from .shot import Shot
@@ -23,6 +23,7 @@ __all__ = [
     "SceneError",
     "Shot",
     "builtin_scene",
+    "frame_identity",
     "load_environment",
     "load_scene",
     "render_frame",

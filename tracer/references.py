@@ -15,8 +15,9 @@ from math import ceil, inf
 from pathlib import Path
 
 from svgf_cl import cache
+from svgf_cl.exr import write_channels
 from svgf_cl.frame import Frame
-from svgf_cl.sequence import channels_of, write_channels
+from svgf_cl.sequence import channels_of
 
 from .checkpoints import Checkpoints
 from .errors import SceneError
@@ -120,10 +121,8 @@ class References:
     @cached_property
     def folder(self) -> Path:
         """Where they are kept: another one as soon as anything differs that they depend on, the tracer included."""
-        scene, shot = self.shot.scene, self.shot
-        seen = (scene.instances, scene.lights, scene.sky, shot.camera_path or scene.camera_path)
-        settings = (shot.shape, shot.frames, shot.fps, self.seed, self.jitter, self.bounces, self._rows, CHUNK)
-        return cache.cache_folder() / "references" / fingerprint([seen, settings, tracer_version()])[:32]
+        settings = (self.seed, self.jitter, self.bounces, self._rows, CHUNK)
+        return cache.cache_folder() / "references" / fingerprint([self.shot.identity, settings])[:32]
 
     def refine(self, number: int, goal: Goal, run: Map = here) -> Iterator[Estimate]:
         """The estimate of frame `number`: the kept one where there is one, and after each further chunk.

@@ -14,6 +14,7 @@ from svgf_cl.frame import Frame
 
 from .camera import Lens
 from .errors import SceneError
+from .fingerprint import fingerprint
 from .integrator import trace
 from .paths import Aim, Before, Draws, Features, Radiance
 from .sampling import pixel_jitter, stream_key
@@ -103,6 +104,13 @@ def render_frame(
         pass
     fields = features._asdict() | radiance._asdict()
     return Frame(**{name: values.reshape(*shot.shape, *values.shape[1:]) for name, values in fields.items()})
+
+
+def frame_identity(
+    shot: Shot, number: int, *, spp: int = 1, seed: int = 0, jitter: bool = True, bounces: int = 1
+) -> str:
+    """Fingerprint of all that `render_frame` of the same arguments depends on."""
+    return fingerprint([shot.identity, number, spp, seed, jitter, bounces])
 
 
 class Sampler:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 from .camera import Camera, CameraPath
 from .errors import SceneError
+from .fingerprint import fingerprint, tracer_version
 from .scene import Scene
 
 Shape = tuple[int, int]
@@ -48,6 +50,13 @@ class Shot:
             raise SceneError(f"frames: expected at least 1, got {self.frames}")
         if not 0.0 < self.fps < float("inf"):
             raise SceneError(f"fps: expected a number above 0, got {self.fps}")
+
+    @cached_property
+    def identity(self) -> str:
+        """Fingerprint of all that its frames depend on: scene, camera, size, length, and the tracer's own version."""
+        scene = self.scene
+        seen = (scene.instances, scene.lights, scene.sky, self.camera_path or scene.camera_path)
+        return fingerprint([seen, self.shape, self.frames, self.fps, tracer_version()])
 
     def camera(self, number: float) -> Camera:
         """The camera of frame `number`, from 0; the one of frame 3.5 is halfway to the next."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import sys
 from collections.abc import Sequence
 from typing import Annotated, Any, NoReturn
@@ -49,6 +50,10 @@ UsageError: type[Any] = typer.BadParameter.__mro__[1]
 
 def main(argv: Sequence[str] | None = None) -> NoReturn:
     """Run the command line on `argv` (by default the process's own arguments) and leave with its exit code."""
+    for stream in (sys.stdout, sys.stderr):
+        # A file may be called what is no text at all: it is shown as Python would write it.
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
     arguments = list(sys.argv[1:] if argv is None else argv) or ["--help"]
     try:
         sys.exit(app(arguments, prog_name="svgf-cl", standalone_mode=False))
@@ -59,7 +64,14 @@ def main(argv: Sequence[str] | None = None) -> NoReturn:
         complaint = " ".join(f"{error.format_message().rstrip('.')}; try '{command} --help'".split())
     except MemoryError as error:
         complaint = f"not enough memory: {error}"
+    except OSError as error:  # a path that no command has looked at: the system says what is wrong with it
+        complaint = f"{error.filename or 'output'}: {error.strerror or error}"
     except (KeyboardInterrupt, typer.Abort):  # which of them, or neither, depends on typer's version
         sys.exit(130)
-    print(f"svgf-cl: {complaint}", file=sys.stderr)
+    print(f"svgf-cl: {printable(complaint)}", file=sys.stderr)
     sys.exit(2)
+
+
+def printable(text: str) -> str:
+    """Escape what would not show, or do something else than show: names come from files and folders of anyone."""
+    return "".join(char if char.isprintable() or char == "\n" else ascii(char)[1:-1] for char in text)

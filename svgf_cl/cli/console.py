@@ -68,6 +68,11 @@ def show(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> N
     Console(width=None if sys.stdout.isatty() else WIDE).print(table)
 
 
+def kept_of(count: int) -> str:
+    """Say how many files were kept of an earlier run, if any."""
+    return f", {count} of them kept from an earlier run" if count else ""
+
+
 def show_times(profiles: Sequence[Mapping[str, float]]) -> None:
     """Print the median time of each pass over frames, each a mapping from pass to milliseconds."""
     times = {name: median(profile.get(name, 0.0) for profile in profiles) for name in profiles[-1]}

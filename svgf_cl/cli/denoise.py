@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated
@@ -10,13 +11,13 @@ import numpy as np
 import numpy.typing as npt
 import typer
 
-from svgf_cl.cli.console import show_times, tracked
+from svgf_cl.cli.console import kept_of, show_times, tracked
 from svgf_cl.cli.options import Exposure, Output, SettingTexts, parse_settings
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.display import to_bytes, write_image
 from svgf_cl.errors import SequenceError
 from svgf_cl.files import make_folder
-from svgf_cl.sequence import check_leftovers, find_frames, read_sequence, write_picture
+from svgf_cl.sequence import check_leftovers, find_frames, is_picture, read_sequence, write_picture
 from svgf_cl.settings import Settings
 
 
@@ -36,6 +37,9 @@ def denoise(
     `svgf-cl render` writes: R G B, normal.X Y Z, depth.Z, motion.X Y [Z], and where there are any albedo.R G B, id,
     emission.R G B, direct.R G B, indirect.R G B. All frames count as one shot: each uses the ones before it.
 
+    After a break the same command goes on: as each picture hangs on all frames before it, those are filtered again, and
+    pictures that are there already and hold the very same are kept.
+
     \b
     Examples:
       svgf-cl denoise out/box -o out/box-denoised
@@ -44,22 +48,27 @@ def denoise(
     settings = parse_settings(set_)
     sources = find_frames(frames)
     targets = target_paths(sources, make_folder(output))
-    check_leftovers(output, targets)
-    profiles = []
+    shown = [target.with_suffix(".png") for target in targets if png]
+    check_leftovers(output, [*targets, *shown])
+    profiles, kept = [], 0
     for target, picture, profile in tracked(denoised(sources, targets, settings), len(sources), "denoising"):
-        write_picture(target, picture)
+        if is_picture(target, picture):
+            kept += 1
+        else:
+            write_picture(target, picture)
         if png:
             write_image(target.with_suffix(".png"), to_bytes(picture, exposure))
         profiles.append(profile)
     show_times(profiles)
-    print(f"{len(profiles)} frames in {output}")
+    print(f"{len(profiles)} frames in {output}{kept_of(kept)}")
 
 
 def target_paths(sources: Sequence[Path], folder: Path) -> list[Path]:
     """Name the picture of each source; `SequenceError` where two would be one file, or one would replace a source."""
     targets = [folder / source.with_suffix(".exr").name for source in sources]
+    read = {os.path.realpath(source) for source in sources}
     for target, source in zip(targets, sources, strict=True):
-        if target.resolve() in {path.resolve() for path in sources}:
+        if os.path.realpath(target) in read:
             raise SequenceError(f"{target}: expected an output folder other than the input's, got {source.parent}")
     if len(set(targets)) < len(targets):
         raise SequenceError(f"{folder}: expected frames of different names, got two that are both called the same")

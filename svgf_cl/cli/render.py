@@ -5,15 +5,15 @@ from __future__ import annotations
 from functools import partial
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from svgf_cl.cli.console import share_bar, tracked
+from svgf_cl.cli.console import kept_of, share_bar, tracked
 from svgf_cl.cli.options import Output, Size, parse_size
 from svgf_cl.cli.scenes import open_scene, read_sky, require_tracer
 from svgf_cl.files import make_folder
-from svgf_cl.sequence import check_leftovers, frame_path, write_frame
+from svgf_cl.sequence import check_leftovers, frame_path, kept_frame, write_frame
 
 if TYPE_CHECKING:
     from tracer import Goal, References
@@ -59,7 +59,8 @@ def render(
 
     Writes frame.0000.exr and so on: noisy radiance and all that the denoiser wants to know, as named channels; with
     --reference-spp or --until-error also reference.0000.exr and so on. References are kept in the user's cache folder
-    as they grow: after a break the same command goes on where it was.
+    as they grow. After a break the same command goes on where it was: frames that are there already, whole and made
+    from the same scene with the same options by the same version, are kept.
 
     \b
     Examples:
@@ -70,7 +71,7 @@ def render(
       svgf-cl render cornell --frames 4 --until-error 0.02 --scheduler tcp://10.0.0.7:8786 -o out/box
     """
     require_tracer()
-    from tracer import BUILTIN, Camera, CameraPath, Goal, References, Shot, render_frame, scheduled
+    from tracer import BUILTIN, Camera, CameraPath, Goal, References, Shot, frame_identity, render_frame, scheduled
 
     frames = frames or (BUILTIN[scene].frames if scene in BUILTIN else 24)
     shape = parse_size(size)
@@ -82,13 +83,16 @@ def render(
         goal = Goal(reference_spp or Goal.spp, inf if until_error is None else until_error)
     folder, written = make_folder(output), ("frame", "reference") if goal else ("frame",)
     check_leftovers(folder, [frame_path(folder, n, stem) for stem in written for n in range(frames)])
+    settings: dict[str, Any] = {"spp": spp, "seed": seed, "jitter": jitter, "bounces": bounces}
+    made_from = {number: frame_identity(shot, number, **settings) for number in range(frames)}
+    missing = [n for n in range(frames) if kept_frame(frame_path(folder, n), made_from[n]) is None]
     with scheduled(scheduler) as run:
-        task = partial(render_frame, spp=spp, seed=seed, jitter=jitter, bounces=bounces)
-        for number, frame in enumerate(tracked(run(task, shot, range(frames)), frames, "rendering")):
-            write_frame(frame_path(folder, number), frame)
+        rendered = tracked(run(partial(render_frame, **settings), shot, missing), len(missing), "rendering")
+        for number, frame in zip(missing, rendered, strict=True):
+            write_frame(frame_path(folder, number), frame, made_from[number])
         if goal:
             write_references(folder, References(shot, seed, jitter, bounces), goal, run)
-    print(f"{frames} frames in {output}")
+    print(f"{frames} frames in {output}{kept_of(frames - len(missing))}")
 
 
 def write_references(folder: Path, references: References, goal: Goal, run: Map) -> None:

@@ -14,12 +14,11 @@ import pytest
 
 from svgf_cl import __version__, devices, tuner, tuning
 from svgf_cl.cli import main
+from svgf_cl.exr import read_channels, write_channels
 from svgf_cl.sequence import (
     CHANNEL_NAMES,
-    read_channels,
     read_frame,
     read_picture,
-    write_channels,
     write_frame,
     write_picture,
 )

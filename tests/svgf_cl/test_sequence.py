@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from svgf_cl import Frame, FrameError, SequenceError
+from svgf_cl.exr import read_channels, write_channels
 from svgf_cl.frame import CARRIED, CHANNELS
 from svgf_cl.sequence import (
     CHANNEL_NAMES,
@@ -22,11 +23,9 @@ from svgf_cl.sequence import (
     find_numbered,
     frame_number,
     frame_path,
-    read_channels,
     read_frame,
     read_picture,
     read_sequence,
-    write_channels,
     write_frame,
     write_picture,
 )

@@ -16,8 +16,9 @@ import OpenImageIO as oiio  # noqa: N813
 import pytest
 
 from svgf_cl import cache
+from svgf_cl.exr import read_channels
 from svgf_cl.metrics import relmse
-from svgf_cl.sequence import read_channels, read_frame
+from svgf_cl.sequence import read_frame
 from tracer import Camera, CameraPath, Goal, References, Scene, SceneError, Shot, builtin_scene, render_frame
 from tracer.estimate import Estimate
 from tracer.references import CHUNK, chunks
