@@ -37,7 +37,8 @@ def write_channels(path: Path, planes: Mapping[str, Plane], attributes: Mapping[
     height, width, count = pixels.shape
     spec = oiio.ImageSpec(width, height, count, "float")
     spec.channelnames = tuple(planes)
-    for name, value in {**attributes, "compression": "zip"}.items():
+    # Without a date, which OpenImageIO would add: the same planes make the same file.
+    for name, value in {**attributes, "compression": "zip", "DateTime": ""}.items():
         spec.attribute(name, value)
     with written_whole(path) as aside:
         image = oiio.ImageBuf(spec)
@@ -87,7 +88,7 @@ def read_pixels(path: Path, formats: Collection[str]) -> tuple[tuple[str, ...], 
         for index in range(spec.nchannels):
             # As floats, integers have come as fractions of the largest one.
             if spec.channelformat(index).basetype == oiio.UINT32:
-                pixels[..., index] = source.read_image(0, 0, index, index + 1, "uint32")[..., 0]
+                pixels[..., index] = source.read_image(0, 0, index, index + 1, oiio.UINT32)[..., 0]
         return tuple(spec.channelnames), pixels
 
 
@@ -95,17 +96,19 @@ def read_pixels(path: Path, formats: Collection[str]) -> tuple[tuple[str, ...], 
 def _opened(path: Path, formats: Collection[str]) -> Iterator[Any]:
     """Open the image at `path`, whose header claims no more than it can hold; all that is wrong is a SequenceError."""
     require(path)
+    if not path.is_file():  # but a folder; or a pipe, which might keep us waiting for ever
+        raise SequenceError(f"{path}: expected {_described(formats)}, found something that is no file")
     try:
         source = oiio.ImageInput.open(_name(path))
         if source is None or source.format_name() not in formats:
             got = f"the format {source.format_name()}" if source else one_line(oiio.geterror())
-            raise SequenceError(f"{path}: expected {' or '.join(FORMATS[name] for name in formats)}, got {got}")
+            raise SequenceError(f"{path}: expected {_described(formats)}, got {got}")
         claimed, held = source.spec().image_bytes(), path.stat().st_size
         if claimed > max(TRUSTED, MAX_RATIO * held):
             raise SequenceError(f"{path}: expected a whole image, got {claimed} bytes of pixels in a file of {held}")
         yield source
     except UnicodeError as error:
-        raise SequenceError(f"{path}: expected names of channels in UTF-8, got others ({error})") from error
+        raise SequenceError(f"{path}: expected text in UTF-8 in its header, got another ({error})") from error
     except MemoryError as error:
         raise SequenceError(f"{path}: expected an image that fits into memory, got a larger one") from error
 
@@ -115,6 +118,11 @@ def _has_last_row(path: Path) -> bool:
     source = oiio.ImageInput.open(_name(path))
     last = source.spec().height - 1 if source else 0
     return source is not None and source.read_scanlines(0, 0, last, last + 1, 0, 0, 1, "float") is not None
+
+
+def _described(formats: Collection[str]) -> str:
+    """What a file of one of these formats is called in errors."""
+    return " or ".join(FORMATS[name] for name in formats)
 
 
 def _name(path: Path) -> str:

@@ -17,7 +17,7 @@ from svgf_cl.errors import SequenceError
 
 @contextmanager
 def written_whole(path: Path) -> Iterator[Path]:
-    """Yield a name beside `path` to write to; the file becomes `path` when the block ends, and is gone if it raises.
+    """Yield an empty file beside `path` to write to; it becomes `path` when the block ends, and is gone if it raises.
 
     A process that is killed leaves its file under a name that nothing reads, ``.NAME.HOST-PROCESS.tmp``, and what was
     at `path` before; `make_folder` deletes it.
@@ -29,6 +29,7 @@ def written_whole(path: Path) -> Iterator[Path]:
     """
     aside = path.with_name(f".{path.name}.{socket.gethostname()}-{os.getpid()}.tmp")
     try:
+        aside.touch()
         yield aside
         _sync(aside)
         os.replace(aside, path)

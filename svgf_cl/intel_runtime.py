@@ -103,7 +103,7 @@ def _vendors_folder(library: Path) -> Path:
     for name in system:
         _link(vendors / name, SYSTEM_VENDORS / name)
     intel = vendors / "svgf_cl-intel.icd"
-    if not intel.exists():
+    if _content(intel) != f"{library}\n":
         with written_whole(intel) as aside:
             aside.write_text(f"{library}\n")
     return vendors

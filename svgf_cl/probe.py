@@ -21,7 +21,7 @@ import pyopencl as cl
 
 from svgf_cl.cache import cache_folder, device_key
 from svgf_cl.errors import SvgfError
-from svgf_cl.files import written_whole
+from svgf_cl.files import read_json, written_whole
 from svgf_cl.programs import OPTIONS
 
 # Part of the key under which answers are remembered: raise it whenever the probe asks for more.
@@ -171,7 +171,7 @@ def _listed() -> Iterator[cl.Device]:
 
 def _recall() -> dict[str, str]:
     try:
-        known = json.loads((cache_folder() / MEMORY).read_bytes())
+        known = read_json(cache_folder() / MEMORY)
     except (OSError, ValueError):
         return {}  # never asked before, unreadable, or damaged: ask the device
     entries = known.items() if isinstance(known, dict) else ()

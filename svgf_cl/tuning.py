@@ -15,7 +15,7 @@ import pyopencl as cl
 from svgf_cl import programs
 from svgf_cl.cache import cache_folder, device_key
 from svgf_cl.errors import DeviceError, SvgfError
-from svgf_cl.files import make_folder, written_whole
+from svgf_cl.files import make_folder, read_json, written_whole
 from svgf_cl.planes import PAGE, ROW_ALIGNMENT, WIDEST_VECTOR
 
 MEMORY = "tunings.json"
@@ -145,7 +145,7 @@ def memory() -> Path:
 def read_memory() -> dict[str, Any]:
     """Every stored tuning by `device_key`; `OSError` or `ValueError` where the file is unreadable or damaged."""
     try:
-        entries = json.loads(memory().read_bytes())
+        entries = read_json(memory())
     except FileNotFoundError:
         return {}
     if not isinstance(entries, dict):

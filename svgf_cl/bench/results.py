@@ -18,7 +18,7 @@ from pytest_benchmark.stats import Stats
 from svgf_cl import __version__
 from svgf_cl.bench.ceilings import Ceilings
 from svgf_cl.errors import SvgfError
-from svgf_cl.files import written_whole
+from svgf_cl.files import read_json, written_whole
 
 
 @dataclass(frozen=True)
@@ -186,7 +186,7 @@ class Run:
     def read(cls, path: Path) -> Run:
         """Read what `write` wrote; `SvgfError` for any other file."""
         try:
-            document = json.loads(path.read_text(encoding="utf-8"))
+            document = read_json(path)
             devices = tuple(DeviceRecord(**device) for device in document["machine_info"].pop("opencl"))
             results = tuple(
                 Result(
