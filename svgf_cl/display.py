@@ -68,7 +68,7 @@ def to_bytes(linear: Linear, exposure: float = 0.0) -> Bytes:
 
 def write_image(path: Path, picture: Bytes) -> None:
     """Write a (H, W, 3) 8-bit picture, whole or not at all; the suffix says how, such as .png or .webp."""
-    # Encoded in memory: OpenImageIO says nothing of a full disk where it writes PNG, and never ends where it writes WebP.
+    # Encoded in memory: OpenImageIO would say nothing of a full disk when writing PNG, and never end when writing WebP.
     encoded = io.BytesIO()
     with written_whole(path) as aside:
         Image.fromarray(picture).save(encoded, format=path.suffix[1:], quality=QUALITY)

@@ -141,7 +141,9 @@ def test_a_new_driver_is_probed_anew(queue):
 
 
 @pytest.mark.parametrize(
-    "damaged", [b'{"some dev', b"", b"5", b"null", b"[1, 2]", b"\xff\xfe", b'{"some device": 5}'], ids=repr
+    "damaged",
+    [b'{"some dev', b"", b"5", b"null", b"[1, 2]", b"\xff\xfe", b'{"some device": 5}', b"[" * 99999],
+    ids=lambda damaged: repr(damaged[:20]),
 )
 def test_a_damaged_memory_is_written_anew(memory, answers, damaged):
     memory.mkdir()

@@ -112,13 +112,16 @@ def test_a_tuning_is_for_the_kernels_it_was_found_with(memory: Path, monkeypatch
     assert stored_tuning(FakeDevice()) is None
 
 
-@pytest.mark.parametrize("damage", ["", "[]", "no JSON", '{"vector_width": 3}', "vector_width", "work_group", "entry"])
+@pytest.mark.parametrize(
+    "damage", ["", "[]", "nested", "no JSON", '{"vector_width": 3}', "vector_width", "work_group", "entry"]
+)
 def test_a_file_that_cannot_be_used_is_named_and_changes_nothing(damage: str, memory: Path) -> None:
     store_tuning(FakeDevice(), ODD)
     text = memory.read_text()
     broken = {
         "vector_width": text.replace('"vector_width": 4', '"vector_width": 3'),
         "work_group": text.replace("work_group", "group"),
+        "nested": "[" * 99999,
         "entry": json.dumps(dict.fromkeys(json.loads(text), 4)),
         '{"vector_width": 3}': text.replace("kernels", "colonels"),
     }

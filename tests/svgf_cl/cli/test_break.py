@@ -110,8 +110,8 @@ def test_render_keeps_only_what_it_would_make(rendered: Path, tmp_path: Path, ca
     assert run("render", "cornell", *FRAMES, "-o", folder) == 0
     assert "2 of them kept" in capsys.readouterr().out
     assert contents(folder) == contents(rendered)
-    for change in (("--seed", "1"), ("--no-jitter",), ("--bounces", "0"), ("--spp", "2"), ("--camera", "0,1,3/0,1,0/60")):
-        assert run("render", "cornell", *FRAMES, *change, "-o", folder) == 0
+    for change in ("--seed=1", "--no-jitter", "--bounces=0", "--spp=2", "--camera=0,1,3/0,1,0/60"):
+        assert run("render", "cornell", *FRAMES, change, "-o", folder) == 0
         assert "kept" not in capsys.readouterr().out
         assert contents(folder)["frame.0003.exr"] != contents(rendered)["frame.0003.exr"]
 
