@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from .boxes import bounds, corners_of_box
 from .compiled import compiled
+from .errors import SceneError
 from .materials import Material
 from .motion import Motion
 from .vec3 import Vec3, add, cross, dot, normalise, scale
@@ -33,6 +34,11 @@ class Instance:
         Texture coordinates, v up; 0 where absent.
     motion : Motion, optional
         Carries corners and normals, which are then in the object's own space, into the world.
+
+    Raises
+    ------
+    SceneError
+        An array has another shape.
     """
 
     corners: NDArray[np.floating]
@@ -40,6 +46,13 @@ class Instance:
     normals: NDArray[np.floating] | None = None
     uv: NDArray[np.floating] | None = None
     motion: Motion | None = None
+
+    def __post_init__(self) -> None:
+        count = len(self.corners)
+        for name, size in (("corners", 3), ("normals", 3), ("uv", 2)):
+            values, expected = getattr(self, name), (count, 3, size)
+            if values is not None and values.shape != expected:
+                raise SceneError(f"instance: expected {name} of shape {expected}, got {values.shape}")
 
     @property
     def masked(self) -> bool:

@@ -67,12 +67,16 @@ class Material:
     brightness: Track | None = None
 
     def __post_init__(self) -> None:
-        for name, colour in (("colour", self.base_colour), ("emission", self.emission)):
-            if not (np.isfinite(colour).all() and min(colour) >= 0.0):
-                raise SceneError(f"material: expected a finite {name} >= 0, got {colour}")
-        for name, value in (("metallic", self.metallic), ("roughness", self.roughness)):
-            if not 0.0 <= value <= 1.0:
+        if not all(0.0 <= channel <= 1.0 for channel in self.base_colour):
+            raise SceneError(f"material: expected a colour in 0..1, got {self.base_colour}")
+        if not (np.isfinite(self.emission).all() and min(self.emission) >= 0.0):
+            raise SceneError(f"material: expected a finite emission >= 0, got {self.emission}")
+        for name in ("metallic", "roughness", "alpha_cutoff"):
+            if (value := getattr(self, name)) is not None and not 0.0 <= value <= 1.0:
                 raise SceneError(f"material: expected {name} in 0..1, got {value}")
+        for name in ("base_texture", "emission_texture"):
+            if (image := getattr(self, name)) is not None:
+                _check_image(name, image)
         if not 1.0 <= self.ior < np.inf:
             raise SceneError(f"material: expected a finite refractive index >= 1, got {self.ior}")
 
@@ -86,6 +90,11 @@ class Material:
     def brightness_at(self, time: float) -> float:
         """The factor of `emission` at `time` in seconds, >= 0."""
         return 1.0 if self.brightness is None else max(float(self.brightness.at(time)[0]), 0.0)
+
+
+def _check_image(name: str, image: Image) -> None:
+    if image.dtype != np.uint8 or image.ndim != 3 or image.shape[2] not in (3, 4) or not image.size:
+        raise SceneError(f"material: expected a {name} (h, w, 3) or (h, w, 4) uint8, got {image.shape} {image.dtype}")
 
 
 class Materials(NamedTuple):

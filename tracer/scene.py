@@ -107,16 +107,16 @@ class Scene:
     def _prepare(self) -> None:
         """Gather all that never changes."""
         self._kinds = list({id(i.material): i.material for i in self.instances}.values())
-        self._number = {id(material): number for number, material in enumerate(self._kinds)}
-        self._id = {id(instance): number for number, instance in enumerate(self.instances, 1)}
-        # Neighbours in the table share a tree: first those whose every point is solid.
-        ordered = sorted(self.instances, key=lambda instance: instance.masked)
-        still = [instance for instance in ordered if instance.motion is None]
-        self._moving = [instance for instance in ordered if instance.motion is not None]
+        kind = {id(material): number for number, material in enumerate(self._kinds)}
+        # Neighbours in the table share a tree: what stands still before what moves, the solid before the masked.
+        ordered = sorted(enumerate(self.instances, 1), key=lambda each: (each[1].motion is not None, each[1].masked))
+        ids, instances = zip(*ordered, strict=True)
+        still = [instance for instance in instances if instance.motion is None]
+        self._moving = [instance for instance in instances if instance.motion is not None]
         self._materials = Materials.of(self._kinds)
         self._sky = sky_table(self.sky)
         self.first_moving = sum(len(instance.corners) for instance in still)
-        self._triangles = self._gather([*still, *self._moving])
+        self._triangles = Triangles.of(instances, ids, [kind[id(instance.material)] for instance in instances], 0.0)
         self._trees = self._grow(still, self._triangles, 0)
         self._still: Moment | None = None
         lights_change = any(isinstance(light, PointLight) and light.motion is not None for light in self.lights)
@@ -124,10 +124,6 @@ class Scene:
             lights = Lights.of(self._triangles, self._kinds, self.lights, self._sky, 0.0)
             tables = Tables(self._triangles, self._materials, lights, self._sky)
             self._still = Moment(tables, Trees(self._trees, self._triangles, self._materials), self._goals(0.0))
-
-    def _gather(self, instances: Sequence[Instance]) -> Triangles:
-        ids = [self._id[id(instance)] for instance in instances]
-        return Triangles.of(instances, ids, [self._number[id(i.material)] for i in instances], 0.0)
 
     def _grow(self, instances: Sequence[Instance], triangles: Triangles, first: int) -> list[Tree]:
         """The trees over `instances`, whose triangles begin at `first` in the table: solid ones, masked ones."""

@@ -238,7 +238,7 @@ def _aim(
         shadows.light[count, DIFFUSE, channel] = light[channel] * diffuse[channel]
         shadows.light[count, SPECULAR, channel] = light[channel] * specular[channel]
     # End in front of the lamp, as far as rays start in front of a surface.
-    shadows.distance[count] = min(sample.distance * (1.0 - 1e-4) - surface.lift, FAR)
+    shadows.distance[count] = min(max(sample.distance * (1.0 - 1e-4) - surface.lift, 0.0), FAR)
     shadows.pixel[count] = pixel
     return count + 1
 

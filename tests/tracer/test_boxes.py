@@ -31,7 +31,7 @@ def test_a_ray_to_a_point_inside_passes(points: list, origin: tuple, number: int
     length = np.linalg.norm(way)
     if length < 1e-2:
         return
-    box = bounds(np.array(points)) + [[-ROOM], [ROOM]]
+    box = bounds(np.array(points)) + np.array([[-ROOM], [ROOM]])
     assert passes(box, origin, way / length, length * (1.0 + 1e-5) + ROOM)
 
 

@@ -54,7 +54,7 @@ def test_only_content_counts() -> None:
         lambda o: replace(o, corners=o.corners.astype(np.float32)),
         lambda o: replace(o, corners=o.corners[::-1]),
         lambda o: replace(o, normals=o.corners),
-        lambda o: replace(o, uv=o.corners),
+        lambda o: replace(o, uv=o.corners[..., :2]),
         lambda o: replace(o, motion=None),
         lambda o: replace(o, motion=Motion.sliding([0.0, 1.0], [[0, 0, 0], [1, 0, 0]], repeats=True)),
         lambda o: replace(o, material=replace(o.material, roughness=0.5)),

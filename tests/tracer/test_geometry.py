@@ -8,6 +8,7 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tracer.errors import SceneError
 from tracer.geometry import Instance, Triangles, cofactors, corners_of, interpolated, surface_at
 from tracer.materials import Material
 from tracer.motion import Keyframes, Motion, Track
@@ -39,6 +40,19 @@ def test_an_instance_is_masked_where_both_image_and_cutoff_are_given() -> None:
     assert Instance(corners, Material(base_texture=MASK, alpha_cutoff=0.5)).masked
     assert not Instance(corners, Material(base_texture=MASK)).masked
     assert not Instance(corners, Material(alpha_cutoff=0.5)).masked
+
+
+@pytest.mark.parametrize(
+    ("wrong", "named"),
+    [
+        ({"corners": np.zeros((2, 3))}, r"corners of shape \(2, 3, 3\), got \(2, 3\)"),
+        ({"normals": np.zeros((1, 3, 3))}, r"normals of shape \(2, 3, 3\), got \(1, 3, 3\)"),
+        ({"uv": np.zeros((2, 3, 3))}, r"uv of shape \(2, 3, 2\), got \(2, 3, 3\)"),
+    ],
+)
+def test_arrays_of_another_shape_are_named(wrong: dict, named: str) -> None:
+    with pytest.raises(SceneError, match=named):
+        Instance(**{"corners": np.zeros((2, 3, 3)), "material": Material()} | wrong)
 
 
 def test_motion_carries_corners() -> None:

@@ -69,6 +69,10 @@ def test_colours_are_finite_and_not_below_0(colour: tuple[float, float, float]) 
         ({"roughness": np.nan}, "roughness in 0..1, got nan"),
         ({"ior": 0.9}, "refractive index >= 1, got 0.9"),
         ({"ior": np.inf}, "refractive index >= 1, got inf"),
+        ({"alpha_cutoff": 1.5}, "alpha_cutoff in 0..1, got 1.5"),
+        ({"base_colour": (0.5, 1.5, 0.5)}, r"colour in 0..1, got \(0.5, 1.5, 0.5\)"),
+        ({"base_texture": np.zeros((4, 4), np.uint8)}, r"base_texture \(h, w, 3\) or .* got \(4, 4\) uint8"),
+        ({"emission_texture": np.zeros((4, 4, 3))}, r"emission_texture \(h, w, 3\) or .* float64"),
     ],
 )
 def test_numbers_out_of_range_are_named(wrong: dict[str, float], named: str) -> None:
