@@ -64,8 +64,8 @@ INLINE void add_tap(Sum *sum, Centre centre, floatv depth_scale, float log2_h, c
 // Row of the image for this work-item: y, y + step, y + 2 step, ... in turn. What comes next then reads four of the five tap
 // rows again, while they are in the cache: a third less time for the wider levels. Dolp et al. 2024 permute pixels so.
 INLINE int interleaved_row(int height, int step) {
-    const int rows = (height + step - 1) / step;
-    return row() < rows * step ? row() / rows + row() % rows * step : height;
+    const int rows = (height + step - 1) / step, first = row() / rows;
+    return row() < rows * step ? first + (row() - first * rows) * step : height;
 }
 
 KERNEL atrous(const int4 size, const int step, const float sigma_depth, const float sigma_normal,

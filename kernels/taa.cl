@@ -58,7 +58,7 @@ INLINE Position foremost(const int4 size, int x, int y, __global const float *de
             p.row = select(p.row, (intv)(y + dy), nearer);
         }
     }
-    p.column = min(p.column, size.x - 1);
+    p.column = min(p.column, (intv)(size.x - 1));
     return p;
 }
 
@@ -100,7 +100,7 @@ KERNEL taa(const int4 size, const float alpha_taa, __global const float *restric
     UNROLLED_FOR(k, 3) h.channel[k] = (floatv)(0.0f);
     UNROLLED_FOR(j, 4) {
         UNROLLED_FOR(i, 4) {
-            const intv tx = clamp(left + i, 0, size.x - 1), ty = clamp(top + j, 0, size.y - 1);
+            const intv tx = within(0, size.x - 1, left + i), ty = within(0, size.y - 1, top + j);
             const Places tap = places(at_lanes(size, tx, ty));
             UNROLLED_FOR(k, 3) h.channel[k] += wx[i] * wy[j] * fetch(history + k * size.w, tap);
         }

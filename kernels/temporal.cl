@@ -90,7 +90,7 @@ INLINE Box box_of(const int4 size, int x, int y, intv left, intv top, intv hit, 
         box.columns += spread_x;
         box.rows += spread_y;
     } else {
-        box.at.lanes = at_lanes(size, clamp(left, -extent, size.x), clamp(top, -extent, size.y));
+        box.at.lanes = at_lanes(size, within(-extent, size.x, left), within(-extent, size.y, top));
     }
     return box;
 }
@@ -160,8 +160,8 @@ INLINE History select_history(intv mask, History yes, History no) {
 }
 
 // Mean over the 2x2 footprint, with bilinear weights.
-INLINE History footprint(const int4 size, Expected e, Box box, float normal_threshold, __global const float *restrict guide,
-                         __global const light_t *restrict history, __global const light_t *restrict moments) {
+INLINE History footprint(const int4 size, Expected e, Box box, float normal_threshold, __global const float * guide,
+                         __global const light_t * history, __global const light_t * moments) {
     History h = no_history();
     for (int j = 0; j < box.rows; ++j) {
         for (int i = 0; i < box.columns; ++i) {
@@ -176,8 +176,8 @@ INLINE History footprint(const int4 size, Expected e, Box box, float normal_thre
 
 // Mean over the nine pixels around the nearest one, which lies (nx, ny) off the footprint's top left.
 INLINE History surroundings(const int4 size, Expected e, floatv nx, floatv ny, Box box, float normal_threshold,
-                            __global const float *restrict guide, __global const light_t *restrict history,
-                            __global const light_t *restrict moments) {
+                            __global const float * guide, __global const light_t * history,
+                            __global const light_t * moments) {
     History h = no_history();
     for (int j = 0; j < box.rows; ++j) {
         for (int i = 0; i < box.columns; ++i) {

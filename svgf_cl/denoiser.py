@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 import operator
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -15,9 +14,9 @@ import pyopencl.array as cl_array
 
 from svgf_cl import devices, programs
 from svgf_cl.buffers import Buffers
-from svgf_cl.errors import DeviceError, FrameError, SvgfError
+from svgf_cl.errors import FrameError, SvgfError
 from svgf_cl.frame import Frame, Shape
-from svgf_cl.launch import Launch
+from svgf_cl.launch import Grid, Launch
 from svgf_cl.memory import memory_slots
 from svgf_cl.passes import OUT, Inputs, Pass, pipeline
 from svgf_cl.planes import Layout
@@ -212,13 +211,13 @@ class Denoiser:
         defines = {"VW": self.tuning.vector_width, **inputs.defines, **self.settings.defines}
         program = programs.build(self.queue.context, self.queue.device, entry.stage, defines)
         kernel = cl.Kernel(program, entry.kernel)
-        check_work_group(kernel, self.queue.device, self.tuning)
         scalars = [] if entry.step is None else [np.int32(entry.step)]
         scalars += [np.float32(getattr(self.settings, name)) for name in entry.settings]
         user = {*inputs.fields, OUT}
         buffers = [name if name in user else planes[name] for name in (*entry.reads, *entry.writes)]
-        work_items = self._layout.work_items(self.tuning.vector_width, self.tuning.work_group, entry.step or 1)
-        return Launch(entry, kernel, (self._layout.size, *scalars, *buffers), work_items, self.tuning.work_group)
+        work_group = fitting(self.tuning.work_group, kernel, self.queue.device)
+        work_items = self._layout.work_items(self.tuning.vector_width, work_group, entry.step or 1)
+        return Launch(entry, kernel, (self._layout.size, *scalars, *buffers), work_items, work_group)
 
     def _run(self, launch: Launch, planes: Buffers, user: dict[str, cl.Buffer]) -> cl.Event:
         event = launch.enqueue(self.queue, user)
@@ -270,14 +269,11 @@ def check_tuning(tuning: Tuning | None, device: cl.Device) -> Tuning:
     return tuning
 
 
-def check_work_group(kernel: cl.Kernel, device: cl.Device, tuning: Tuning) -> None:
-    """Raise `DeviceError` where a kernel takes so much of the device that fewer work-items fit a group."""
+def fitting(work_group: Grid, kernel: cl.Kernel, device: cl.Device) -> Grid:
+    """A work-group cut to what a device can run of one kernel: fewer, where that takes many registers."""
     most = kernel.get_work_group_info(cl.kernel_work_group_info.WORK_GROUP_SIZE, device)
-    if math.prod(tuning.work_group) > most:
-        raise DeviceError(
-            f"Tuning.work_group: expected at most {most} work-items for {kernel.function_name} on {device.name}, got "
-            f"{tuning.work_group}; pass a Tuning with a smaller one, or if it was stored run 'svgf-cl tune --reset'"
-        )
+    along = min(work_group[0], most)
+    return along, min(work_group[1], most // along)
 
 
 def layout_of(shape: Shape, row_alignment: int) -> Layout:

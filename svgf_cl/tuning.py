@@ -36,7 +36,7 @@ class Tuning:
     vector_width : int, pixels, one of 1, 4, 8, 16
         Pixels of a row that a work-item treats as one vector.
     work_group : (int, int), work-items, each >= 1
-        Size of a work-group, along a row and down.
+        Size of a work-group, along a row and down; less for a kernel of which the device can run fewer together.
     row_alignment : int, pixels, 16 .. 512, a multiple of 16
         Rows of the device's planes are a multiple of it apart; see `svgf_cl.planes.Layout`.
 
@@ -86,11 +86,13 @@ def default_tuning(device: cl.Device) -> Tuning:
     """What suits most devices of this kind.
 
     On a CPU, vectors of twice its native width, which hides the latency of its arithmetic; 16 is the widest type OpenCL
-    has. Elsewhere single pixels.
+    has. Where there is none the driver makes vectors of work-items itself (rusticl on llvmpipe). There, and elsewhere,
+    single pixels.
     """
     if not device.type & cl.device_type.CPU:
         return Tuning(vector_width=1, work_group=GPU_WORK_GROUP)
-    return Tuning(vector_width=max(4, min(16, 2 * device.native_vector_width_float)), work_group=CPU_WORK_GROUP)
+    native = device.native_vector_width_float
+    return Tuning(vector_width=min(16, 2 * native) if native > 1 else 1, work_group=CPU_WORK_GROUP)
 
 
 def stored_tuning(device: cl.Device) -> Tuning | None:

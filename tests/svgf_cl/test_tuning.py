@@ -13,7 +13,8 @@ import pyopencl as cl
 import pytest
 
 from svgf_cl import Denoiser, DeviceError, SvgfError, Tuning, tuning
-from svgf_cl.denoiser import check_work_group
+from svgf_cl.denoiser import fitting
+from svgf_cl.launch import Grid
 from svgf_cl.tuning import best_tuning, default_tuning, forget_tuning, store_tuning, stored_tuning
 from tests.denoising import vector_width
 from tests.frames import wall
@@ -58,7 +59,7 @@ def test_values_out_of_range(field: str, value: object) -> None:
         Tuning(**{"vector_width": 16, "work_group": (16, 1), field: value})
 
 
-@pytest.mark.parametrize(("native", "width"), [(0, 4), (1, 4), (4, 8), (8, 16), (16, 16)])
+@pytest.mark.parametrize(("native", "width"), [(0, 1), (1, 1), (2, 4), (4, 8), (8, 16), (16, 16)])
 def test_vectors_of_a_cpu(native: int, width: int) -> None:
     assert default_tuning(FakeDevice(native_vector_width_float=native)).vector_width == width
 
@@ -90,11 +91,13 @@ def test_a_tuning_of_another_type() -> None:
         Denoiser((3, 5), tuning=16)  # type: ignore[arg-type]
 
 
-def test_a_group_too_large_for_a_kernel(queue: cl.CommandQueue) -> None:
-    greedy = SimpleNamespace(function_name="greedy", get_work_group_info=lambda name, device: 64)
-    check_work_group(greedy, queue.device, Tuning(vector_width=1, work_group=(64, 1)))
-    with pytest.raises(DeviceError, match="at most 64 work-items for greedy"):
-        check_work_group(greedy, queue.device, Tuning(vector_width=1, work_group=(64, 2)))
+@pytest.mark.parametrize(
+    ("group", "cut"),
+    [((64, 1), (64, 1)), ((16, 4), (16, 4)), ((32, 4), (32, 2)), ((128, 2), (64, 1)), ((1, 99), (1, 64))],
+)
+def test_a_group_too_large_for_a_kernel_is_cut(group: Grid, cut: Grid, queue: cl.CommandQueue) -> None:
+    greedy = SimpleNamespace(get_work_group_info=lambda name, device: 64)
+    assert fitting(group, greedy, queue.device) == cut
 
 
 def test_devices_and_drivers_are_kept_apart(memory: Path) -> None:
