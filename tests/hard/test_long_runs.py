@@ -128,6 +128,17 @@ class TestStill:
         assert_allclose(run.variances, expected, rtol=bound)
 
 
+def test_history_at_its_longest_follows_a_change_of_light(variant: Variant) -> None:
+    """Of a tenth, to within a fiftieth: rounding swallows no share of 1/64 that is new."""
+    longest = LENGTH_MAX[variant.settings.half_history]
+    den = Denoiser(SHAPE, settings=replace(variant.settings, alpha_color=0.0, alpha_moments=0.0))
+    for light, count in ((LIGHT, longest), (1.1 * LIGHT, 5 * longest)):
+        wall = variant.wall(light, shape=SHAPE)
+        for _ in range(count):
+            picture = den.denoise(wall)
+    assert_allclose(picture, 1.1 * LIGHT, rtol=0.02)
+
+
 def random_frames(variant: Variant, count: int) -> Iterator[Frame]:
     """Unlike each other in every field, with motion of a thousandth to a thousand pixels."""
     rng = np.random.default_rng(3)
