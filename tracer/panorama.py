@@ -6,7 +6,9 @@ from os import PathLike
 from pathlib import Path
 
 import numpy as np
-import OpenImageIO as oiio  # noqa: N813  # its documentation calls it so
+
+from svgf_cl.errors import SequenceError
+from svgf_cl.exr import read_pixels
 
 from .errors import SceneError
 from .sky import Environment
@@ -14,7 +16,7 @@ from .vectors import Float64
 
 FORMATS = ("hdr", "openexr")  # linear ones
 
-# 8192 x 4096: 400 MB in memory. A file says its size before it is read.
+# 8192 x 4096: 400 MB in memory.
 MAX_PIXELS = 2**25
 
 
@@ -33,22 +35,15 @@ def load_environment(path: str | PathLike[str], to_world: Float64 | None = None)
         The file is missing, damaged, of another format or too large, or holds what is no radiance.
     """
     path = Path(path)
-    if not path.is_file():
-        raise SceneError(f"{path}: no such file")
-    source = oiio.ImageInput.open(str(path))
-    if source is None or source.format_name() not in FORMATS:
-        got = f"the format {source.format_name()}" if source else oiio.geterror()
-        raise SceneError(f"{path}: expected a linear image, .hdr or .exr, got {got}")
-    size = source.spec()
-    if size.nchannels < 3 or size.width * size.height > MAX_PIXELS:
-        raise SceneError(
-            f"{path}: expected three channels and at most {MAX_PIXELS} pixels, "
-            f"got {size.nchannels} and {size.width} x {size.height}"
-        )
-    pixels = source.read_image(0, 0, 0, 3, "float")
-    if pixels is None:
-        raise SceneError(f"{path}: expected a whole image, got a damaged one ({source.geterror()})")
     try:
-        return Environment(pixels, np.eye(3) if to_world is None else to_world)
+        names, pixels = read_pixels(path, FORMATS)
+        height, width = pixels.shape[:2]
+        if len(names) < 3 or width * height > MAX_PIXELS:
+            raise SceneError(
+                f"expected three channels and at most {MAX_PIXELS} pixels, got {len(names)} and {width} x {height}"
+            )
+        return Environment(np.ascontiguousarray(pixels[..., :3]), np.eye(3) if to_world is None else to_world)
+    except SequenceError as error:
+        raise SceneError(str(error)) from error
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from error

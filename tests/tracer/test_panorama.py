@@ -47,14 +47,21 @@ def test_a_damaged_file_is_named(tmp_path: Path, name: str) -> None:
         load_environment(path)
 
 
+def test_no_memory_is_taken_for_what_a_header_claims(tmp_path: Path) -> None:
+    path = tmp_path / "a.hdr"
+    path.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 30000 +X 60000\n" + bytes(1000))
+    with pytest.raises(SceneError, match=r"a\.hdr: expected a whole image, got \d+ bytes of pixels in a file of"):
+        load_environment(path)
+
+
 def test_other_files_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match=r"a\.hdr: no such file"):
+    with pytest.raises(SceneError, match=r"a\.hdr: expected a file"):
         load_environment(tmp_path / "a.hdr")
     (tmp_path / "a.png").write_bytes(png(np.zeros((2, 2, 3))))
-    with pytest.raises(SceneError, match=r"expected a linear image, \.hdr or \.exr, got the format png"):
+    with pytest.raises(SceneError, match=r"expected a Radiance HDR file or an OpenEXR file, got the format png"):
         load_environment(tmp_path / "a.png")
     (tmp_path / "a.exr").write_bytes(b"nothing of the kind")
-    with pytest.raises(SceneError, match=r"a\.exr: expected a linear image"):
+    with pytest.raises(SceneError, match=r"a\.exr: expected a Radiance HDR file"):
         load_environment(tmp_path / "a.exr")
 
 

@@ -69,7 +69,11 @@ def _chosen(description: SceneDescription, alternative: bool) -> Sequence[AnyLig
 
 def _inside(folder: Path, name: str) -> Path:
     """The file `name` in `folder` or below: a description from elsewhere reads nothing else."""
-    path = (folder / name).resolve()
+    try:
+        path = (folder / name).resolve()
+        path.is_file()
+    except (OSError, RuntimeError, ValueError) as error:  # a loop of links, a name too long or with a zero in it
+        raise SceneError(f"expected the name of a file, found {name!r}: {error}") from error
     if not path.is_relative_to(folder.resolve()):
         raise SceneError(f"expected a file inside the scene's folder, found {name!r}")
     return folder / name

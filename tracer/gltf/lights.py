@@ -19,7 +19,7 @@ from tracer.meshes import colour, is_moving
 from tracer.model import Light
 from tracer.motion import Motion
 
-from .file import Gltf
+from .file import Gltf, entry
 from .nodes import Nodes
 
 EXTENSION = "KHR_lights_punctual"
@@ -31,7 +31,7 @@ def read_lights(gltf: Gltf, nodes: Nodes) -> Iterator[Light]:
     for chain in nodes.chains():
         extension = nodes.node(chain).get("extensions", {}).get(EXTENSION)
         if extension:
-            yield Light(_light(known[extension["light"]], nodes.motion(chain)), nodes.names(chain))
+            yield Light(_light(entry(known, "lights", extension["light"]), nodes.motion(chain)), nodes.names(chain))
 
 
 def _light(document: dict[str, Any], motion: Motion) -> PointLight | Sun:
@@ -56,7 +56,7 @@ def read_camera(gltf: Gltf, nodes: Nodes) -> Camera | None:
     """The first perspective camera among the scene's nodes, as it stands at the start; None where there is none."""
     for chain in nodes.chains():
         node = nodes.node(chain)
-        lens = gltf.document["cameras"][node["camera"]].get("perspective") if "camera" in node else None
+        lens = gltf.item("cameras", node["camera"]).get("perspective") if "camera" in node else None
         if lens:
             _, up, back, position = nodes.motion(chain).matrix(0.0)[:3].T
             return Camera(vector(position), vector(position - back), vector(up), math.degrees(lens["yfov"]))

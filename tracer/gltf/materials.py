@@ -13,6 +13,8 @@ from tracer.materials import Material
 from tracer.meshes import Images, colour, unnamed_material
 from tracer.textures import Image
 
+from .file import name_of
+
 BLACK, WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 
 # What the core specification and KHR_materials_ior have where a file says nothing.
@@ -45,7 +47,7 @@ class Materials:
         document = self._documents[index]
         if index not in self._made:
             self._made[index] = self._make(document, source)
-        return document.get("name", ""), self._made[index]
+        return name_of(document), self._made[index]
 
     def _make(self, document: dict[str, Any], source: Any) -> Material | None:
         """The material of `document`, with the images that trimesh hung on `source`."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tracer.errors import SceneError
 from tracer.meshes import instance
 from tracer.model import Model, Object
 from tracer.vectors import Float64
@@ -12,6 +13,9 @@ from .file import Gltf
 from .lights import read_camera, read_lights
 from .materials import Materials
 from .nodes import Nodes
+
+# Each takes a few hundred bytes; a small file may show the same mesh in any number of nodes.
+MAX_TRIANGLES = 2**25
 
 
 def load_gltf(path: Path, to_world: Float64) -> Model:
@@ -34,9 +38,12 @@ def load_gltf(path: Path, to_world: Float64) -> Model:
     """
     gltf = Gltf.read(path)
     nodes, materials, meshes = Nodes(gltf, to_world), Materials(gltf.document.get("materials", [])), gltf.meshes()
-    objects = []
+    objects, room = [], MAX_TRIANGLES
     for chain in nodes.chains():
         for mesh in meshes.get(nodes.node(chain).get("mesh", -1), []):
+            room -= len(mesh.faces)
+            if room < 0:
+                raise SceneError(f"meshes: expected at most {MAX_TRIANGLES} triangles in all nodes, found more")
             name, material = materials.of(mesh)
             if material is not None:
                 objects.append(Object(instance(mesh, nodes.motion(chain), material), nodes.names(chain), name))

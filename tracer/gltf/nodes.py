@@ -12,10 +12,13 @@ from tracer.errors import SceneError
 from tracer.motion import Keyframes, Motion, Track
 from tracer.vectors import Float64
 
-from .file import Gltf
+from .file import Gltf, entry, name_of
 
 # Where a node stands that says nothing of it.
 REST = {"translation": (0.0, 0.0, 0.0), "rotation": (0.0, 0.0, 0.0, 1.0), "scale": (1.0, 1.0, 1.0)}
+
+# Of real ones a few dozen are below one another; what a node's place is made of grows with their number.
+MAX_DEPTH = 256
 
 # A node's index after those of its ancestors, outermost first.
 Chain = tuple[int, ...]
@@ -33,7 +36,6 @@ class Nodes:
 
     def __init__(self, gltf: Gltf, to_world: Float64) -> None:
         self._gltf, self._to_world = gltf, to_world
-        self._nodes: list[dict[str, Any]] = gltf.document.get("nodes", [])
         self._animation: dict[str, Any] = next(iter(gltf.document.get("animations", [])), {"channels": []})
         self._links: dict[int, Keyframes | Float64] = {}
         self._channels: dict[int, dict[str, int]] = defaultdict(dict)
@@ -48,28 +50,31 @@ class Nodes:
         Raises
         ------
         SceneError
-            There is no scene, or a node hangs on two others.
+            There is no scene, a node is not there or hangs on two others, or too many are below one another.
         """
         document = self._gltf.document
         if not document.get("scenes"):
             raise SceneError("scenes: expected at least one, found none")
-        waiting: list[Chain] = [(root,) for root in reversed(document["scenes"][document.get("scene", 0)]["nodes"])]
+        scene = self._gltf.item("scenes", document.get("scene", 0))
+        waiting: list[Chain] = [(root,) for root in reversed(scene["nodes"])]
         seen = set()
         while waiting:
             chain = waiting.pop()
             if chain[-1] in seen:
                 raise SceneError(f"nodes: expected a tree, found node {chain[-1]} in two places")
+            if len(chain) > MAX_DEPTH:
+                raise SceneError(f"nodes: expected at most {MAX_DEPTH} of them below one another, found more")
             seen.add(chain[-1])
             yield chain
             waiting += [(*chain, child) for child in reversed(self.node(chain).get("children", []))]
 
     def node(self, chain: Chain) -> dict[str, Any]:
         """The node's JSON."""
-        return self._nodes[chain[-1]]
+        return self._gltf.item("nodes", chain[-1])
 
     def names(self, chain: Chain) -> tuple[str, ...]:
         """What the node and its ancestors are called, outermost first."""
-        return tuple(self._nodes[index].get("name", "") for index in chain)
+        return tuple(name_of(self._gltf.item("nodes", index)) for index in chain)
 
     def motion(self, chain: Chain) -> Motion:
         """The node's way through the world.
@@ -86,7 +91,7 @@ class Nodes:
 
     def _link(self, index: int) -> Keyframes | Float64:
         """A node's transform into the frame of its parent; `Keyframes` where it moves."""
-        node, channels = self._nodes[index], self._channels[index]
+        node, channels = self._gltf.item("nodes", index), self._channels[index]
         if "matrix" in node and channels:
             raise SceneError(f"nodes[{index}]: expected no matrix on a node that is animated, found one")
         if "matrix" in node:
@@ -98,7 +103,7 @@ class Nodes:
         return link if channels else link.matrix(0.0)
 
     def _track(self, index: int) -> Track:
-        sampler = self._animation["samplers"][index]
+        sampler = entry(self._animation["samplers"], "animations[0].samplers", index)
         interpolation = sampler.get("interpolation", "LINEAR")
         if interpolation not in ("LINEAR", "STEP"):
             raise SceneError(
