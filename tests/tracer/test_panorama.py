@@ -50,7 +50,7 @@ def test_a_damaged_file_is_named(tmp_path: Path, name: str) -> None:
 def test_no_memory_is_taken_for_what_a_header_claims(tmp_path: Path) -> None:
     path = tmp_path / "a.hdr"
     path.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 30000 +X 60000\n" + bytes(1000))
-    with pytest.raises(SceneError, match=r"a\.hdr: expected a whole image, got \d+ bytes of pixels in a file of"):
+    with pytest.raises(SceneError, match=r"a\.hdr: expected .* from a 1053 byte file|in a file of 1053"):
         load_environment(path)
 
 

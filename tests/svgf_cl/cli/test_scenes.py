@@ -19,7 +19,7 @@ def test_a_sky_is_three_radiances_or_an_image(tmp_path: Path) -> None:
     assert read_sky("1,2.5,3") == (1, 2.5, 3)
     write_picture(tmp_path / "1,2,3.exr", np.full((2, 4, 3), 7))
     assert (read_sky(str(tmp_path / "1,2,3.exr")).image == 7).all()
-    with pytest.raises(SvgfError, match=r"sky\.hdr: no such file"):
+    with pytest.raises(SvgfError, match=r"sky\.hdr: expected a file"):
         read_sky(str(tmp_path / "sky.hdr"))
 
 
