@@ -1,4 +1,4 @@
-"""OpenEXR files as named planes: written whole or not at all; read, like Radiance HDR, without trust in what they claim."""
+"""OpenEXR files as named planes: written whole or not at all; read, as Radiance HDR is, with no trust in their claims."""
 
 from __future__ import annotations
 
