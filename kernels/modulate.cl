@@ -1,6 +1,6 @@
 // First and last stage: the user's interleaved (H, W, C) arrays in and out of the planar layout.
 //
-//   demodulate   c = min(max((color - emission) / albedo', 0), 1e15),  albedo' = max(albedo, 0.001)
+//   demodulate   c = min(max((color - emission) / albedo', 0), MAX_LIGHT),  albedo' = clamp(albedo, 0.001, 1)
 //   modulate     out = sum over signals c * albedo' + emission
 //
 // in   color, or direct and indirect; albedo, emission, id where the frame has them; normal, depth
@@ -9,20 +9,24 @@
 // black surfaces: modulate multiplies by the number that demodulate divided by.
 
 #define MIN_ALBEDO 0.001f
-#define MAX_RADIANCE 1e38f      // finite, whatever the albedo
+#define MAX_CHANNEL 1e10f  // of a radiance or a normal; the sun's disc has 2e9 cd/m2
+#define MIN_DEPTH 1e-20f
+#define MAX_DEPTH 1e20f  // some renderers write their greatest number where nothing was hit
 
-INLINE floatv known_albedo(floatv a) { return where(isfinite(a), max(a, (floatv)(MIN_ALBEDO)), (floatv)(1.0f)); }
+// White where it is NaN; what is above white is left to the light, lest another pixel's light be multiplied by it.
+INLINE floatv known_albedo(floatv a) { return where(a < 1.0f, max(a, (floatv)(MIN_ALBEDO)), (floatv)(1.0f)); }
 
-// Zero where any channel is not finite: clamping or scaling an infinity would leave a firefly or a NaN.
-INLINE Color finite_color(Color c) {
-    const intv good = isfinite(c.channel[0]) & isfinite(c.channel[1]) & isfinite(c.channel[2]);
+// Zero where any channel is NaN, infinite or beyond all that shines: clamped it would be a firefly for hundreds of frames.
+INLINE Color known_color(Color c) {
+    const intv good = (fabs(c.channel[0]) <= MAX_CHANNEL) & (fabs(c.channel[1]) <= MAX_CHANNEL) &
+                      (fabs(c.channel[2]) <= MAX_CHANNEL);
     UNROLLED_FOR(k, 3) c.channel[k] = where(good, c.channel[k], (floatv)(0.0f));
     return c;
 }
 
 #if HAS_EMISSION
 INLINE Color known_emission(const int4 size, int x, int y, __global const float *emission) {
-    Color glow = finite_color(load_color(size, x, y, emission));
+    Color glow = known_color(load_color(size, x, y, emission));
     UNROLLED_FOR(k, 3) glow.channel[k] = max(glow.channel[k], (floatv)(0.0f));
     return glow;
 }
@@ -57,9 +61,9 @@ KERNEL demodulate(const int4 size,
     const intv inside = x + LANES < size.x;
 
     const floatv z = load_pixels(size, x, y, depth);
-    const Color n = finite_color(load_color(size, x, y, normal));
+    const Color n = known_color(load_color(size, x, y, normal));
     const floatv length2 = n.channel[0] * n.channel[0] + n.channel[1] * n.channel[1] + n.channel[2] * n.channel[2];
-    const intv hit = inside & isfinite(z) & (z > 0.0f) & isfinite(length2) & (length2 > 1e-12f);
+    const intv hit = inside & (z > MIN_DEPTH) & (z < MAX_DEPTH) & (length2 > 1e-12f);
     const floatv to_unit = where(hit, 1.0f / sqrt(length2), (floatv)(0.0f));
     __global normal_t *unit = (__global normal_t *)(guide + NORMAL * size.w) + here;
     UNROLLED_FOR(k, 3) store_normal(where(hit, n.channel[k] * to_unit, (floatv)(0.0f)), unit + k * size.w);
@@ -69,9 +73,9 @@ KERNEL demodulate(const int4 size,
 #endif
 
 #if SIGNALS == 2
-    Color light[2] = {finite_color(load_color(size, x, y, direct)), finite_color(load_color(size, x, y, indirect))};
+    Color light[2] = {known_color(load_color(size, x, y, direct)), known_color(load_color(size, x, y, indirect))};
 #else
-    Color light[1] = {finite_color(load_color(size, x, y, color))};
+    Color light[1] = {known_color(load_color(size, x, y, color))};
 #if HAS_EMISSION
     const Color glow = known_emission(size, x, y, emission);
     UNROLLED_FOR(k, 3) light[0].channel[k] -= glow.channel[k];
@@ -114,7 +118,6 @@ KERNEL modulate(const int4 size,
     const Color glow = known_emission(size, x, y, emission);
     UNROLLED_FOR(k, 3) c.channel[k] += glow.channel[k];
 #endif
-    UNROLLED_FOR(k, 3) c.channel[k] = min(c.channel[k], (floatv)(MAX_RADIANCE));
 #if TAA
     UNROLLED_FOR(k, 3) store(where(x + LANES < size.x, c.channel[k], (floatv)(0.0f)), out + k * size.w + here);
 #else

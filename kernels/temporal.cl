@@ -45,7 +45,7 @@ INLINE Expected expect(const int4 size, int x, int y, __global const float *moti
     const int here = at(size, x, y);
     const Color m = load_motion(size, x, y, motion);
     const floatv depth = load(guide + DEPTH * size.w + here) + m.channel[2];
-    const intv good = isfinite(m.channel[0]) & isfinite(m.channel[1]) & isfinite(depth);
+    const intv good = isfinite(m.channel[0]) & isfinite(m.channel[1]) & isfinite(m.channel[2]);
     Expected e;
     const floatv mx = where(good, clamp(m.channel[0], -FAR, FAR), (floatv)(FAR));
     const floatv my = where(good, clamp(m.channel[1], -FAR, FAR), (floatv)(FAR));

@@ -32,11 +32,11 @@ from svgf_cl.reference_taps import (
 )
 from svgf_cl.settings import Settings
 
-RADIANCE_MAX = 1e38
-FLOAT32_MAX = float(np.finfo(np.float32).max)
+CHANNEL_MAX = 1e10
+DEPTH_RANGE = (1e-20, 1e20)
 ALBEDO_FLOOR = 0.001
 # Whether kept as 16-bit floats.
-ILLUMINATION_MAX = {False: 1e15, True: 65504.0}
+ILLUMINATION_MAX = {False: 1e13, True: 65504.0}
 MOTION_MAX = 1e6
 NO_HISTORY = (-MOTION_MAX, -MOTION_MAX, 0.0)
 NEARER = float(np.float32(0.9999))
@@ -57,7 +57,7 @@ class Guides:
     depth : (H, W), > 0; 0 at a miss.
     motion : (H, W, 3), previous minus current x, y and depth.
     id : (H, W) integers, or None where the frame has none.
-    albedo : (H, W, 3), at least 0.001.
+    albedo : (H, W, 3), 0.001..1.
     emission : (H, W, 3), not negative.
     """
 
@@ -116,24 +116,29 @@ def demodulate(frame: Frame, settings: Settings | None = None) -> tuple[Array, G
     """
     given = {name: np.asarray(value, np.float64) for name, value in frame.present().items() if name != "id"}
     albedo = given.get("albedo", np.ones((*frame.shape, 3)))
-    albedo = np.where(np.isfinite(albedo), np.maximum(albedo, ALBEDO_FLOOR), 1)
+    albedo = np.where(np.isnan(albedo), 1, np.clip(albedo, ALBEDO_FLOOR, 1))
     emission = given.get("emission", np.zeros((*frame.shape, 3)))
-    emission = np.where(finite(emission), np.maximum(emission, 0), 0)
+    emission = np.maximum(known(emission), 0)
     normal, depth = safe_surface(given["normal"], given["depth"])
     guides = Guides(normal, depth, safe_motion(given["motion"]), frame.id, albedo, emission)
 
-    radiance = np.stack([given["direct"], given["indirect"]] if "direct" in given else [given["color"] - emission])
-    illumination = np.where(finite(radiance), radiance, 0) / albedo
+    split = "direct" in given
+    reflected = [known(given[name]) for name in ("direct", "indirect")] if split else [known(given["color"]) - emission]
     greatest = ILLUMINATION_MAX[(settings or Settings()).half_history]
-    return np.clip(illumination, 0, greatest), guides
+    return np.clip(np.stack(reflected) / albedo, 0, greatest), guides
+
+
+def known(color: Array) -> Array:
+    """Section 1: a radiance or normal, (..., 3); 0 where any channel is NaN or beyond 1e10."""
+    return np.where((np.abs(color) <= CHANNEL_MAX).all(axis=-1, keepdims=True), color, 0)
 
 
 def safe_surface(normal: Array, depth: Array) -> tuple[Array, Array]:
     """Section 1: unit normal (H, W, 3) and depth (H, W) of a hit, 0 and 0 of a miss."""
-    normal = np.where(finite(normal), normal, 0)
+    normal = known(normal)
     squared = dot(normal, normal)
-    # "Finite" is meant in float32, the kernels' type.
-    hit = np.isfinite(depth) & (depth > 0) & (squared > 1e-12) & (squared <= FLOAT32_MAX)
+    nearest, farthest = DEPTH_RANGE
+    hit = (depth > nearest) & (depth < farthest) & (squared > 1e-12)
     length = np.sqrt(np.where(hit, squared, 1))
     return np.where(hit[..., None], normal / length[..., None], 0), np.where(hit, depth, 0)
 
@@ -154,7 +159,7 @@ def consistent(x: Indices, y: Indices, guides: Guides, previous: Guides, setting
     tolerance = settings.depth_threshold * expected + np.abs(gradient).sum(axis=-1)
 
     rows, columns, inside = locate(x, y, guides.depth.shape)
-    same = inside & (expected <= FLOAT32_MAX) & guides.hit & previous.hit[rows, columns]
+    same = inside & guides.hit & previous.hit[rows, columns]
     same &= np.abs(previous.depth[rows, columns] - (expected + along_surface)) <= tolerance
     same &= dot(guides.normal, previous.normal[rows, columns]) >= settings.normal_threshold
     if guides.id is not None and previous.id is not None:
@@ -286,7 +291,7 @@ def modulate(illumination: Array, guides: Guides) -> Array:
     """Section 5: out = sum over signals of c * albedo' + emission', (H, W, 3)."""
     # Emission is added once, whatever the number of signals.
     image: Array = illumination.sum(axis=0) * guides.albedo + guides.emission
-    return np.minimum(image, RADIANCE_MAX)
+    return image
 
 
 def foremost(guides: Guides) -> tuple[Indices, Indices]:

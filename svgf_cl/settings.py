@@ -76,8 +76,8 @@ class Settings:
         on a CPU, where the time saved on memory is spent on converting.
     half_history : bool
         Keep illumination, its history and its moments as 16-bit floats: half their memory, an error of 2^-12, of light
-        that stands still up to 2^-11 / alpha_color (or 2^-6: an alpha below 1/32 counts as that), and no illumination
-        above 65504. Off: no faster on a CPU.
+        that stands still up to 2^-11 / alpha_color (or 2^-6: an alpha below 1/32 counts as that), and illumination that
+        saturates at 65504. Off: no faster on a CPU.
     """
 
     iterations: int = 5

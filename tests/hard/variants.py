@@ -47,11 +47,11 @@ class Variant:
         """What a frame of it holds beside the surface; with few sets there are few kernels to compile."""
         return SPLIT if self.signals == 2 else FULL
 
-    def wall(self, light: Any = 0.5, *, shape: Shape = SHAPE, **given: Any) -> Frame:
-        """A wall with all `fields` in this light, any of them replaced; numbers and triples fill the image."""
-        light = np.asarray(light, np.float32)
-        lights = {"color": light, "direct": 0.75 * light, "indirect": 0.25 * light}
-        return only(wall(shape, **lights | {"albedo": 1.0, "emission": 0.0, "id": 1} | given), self.fields)
+    def wall(self, light: Any = 0.5, *, emission: Any = 0.0, shape: Shape = SHAPE, **given: Any) -> Frame:
+        """A wall with all `fields`, that reflects this light; numbers and triples fill the image."""
+        light, emission = np.asarray(light, np.float32), np.asarray(emission, np.float32)
+        lights = {"color": light + emission, "direct": 0.75 * light, "indirect": 0.25 * light, "emission": emission}
+        return only(wall(shape, **lights | {"albedo": 1.0, "id": 1} | given), self.fields)
 
     def denoiser(self, shape: Shape = SHAPE, **kept: Any) -> Denoiser:
         """A denoiser with these settings."""

@@ -15,7 +15,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from svgf_cl import Denoiser, Frame, Settings, SvgfError
 from svgf_cl.accuracy import DECISION, largest_channel, relative_error
-from svgf_cl.frame import CARRIED, CHANNELS, Shape
+from svgf_cl.frame import Shape
 from svgf_cl.passes import Inputs, pipeline
 from svgf_cl.planes import HALO, Layout
 from svgf_cl.reference import Reference
@@ -137,54 +137,6 @@ class TestReset:
         for frame, disturbance in zip(bumpy_sequence(SPLIT), bumpy_sequence(SPLIT, seed=1), strict=True):
             other.denoise(disturbance)
             assert_array_equal(one.denoise(frame), alone.denoise(frame))
-
-
-every_part = pytest.mark.parametrize("part", [np.s_[3, 4], np.s_[:]], ids=["pixel", "image"])
-
-
-def spoiled(frame: Frame, name: str, value: float, part: Any) -> Frame:
-    field = getattr(frame, name).copy()
-    field[part] = value
-    return replace(frame, **{name: field})
-
-
-GOOD = replace(bumpy_sequence(SPLIT, count=1, shape=TINY)[0], motion=np.zeros((*TINY, 3), np.float32))
-# Forgets the square of 1e15 within 60 frames.
-BRISK = {"alpha_color": 0.8, "alpha_moments": 0.8, "alpha_taa": 0.8, "taa": True}
-
-
-@pytest.fixture(scope="module")
-def steady() -> np.ndarray:
-    """What a sequence of `GOOD` frames comes to."""
-    return feed(*[GOOD] * 60, **BRISK)[0]
-
-
-@pytest.mark.parametrize("name", [name for name in CHANNELS if name not in ("id", "color", *CARRIED)])
-@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1e30, -1e30, 3e38], ids=str)
-@every_part
-class TestFaultyInput:
-    def test_leaves_all_stages_finite(self, name: str, value: float, part: Any) -> None:
-        out, den = feed(GOOD, spoiled(GOOD, name, value, part), GOOD, taa=True)
-        assert np.isfinite(out).all()
-        assert all(np.isfinite(den.stage(stage)).all() for stage in den.stages)
-
-    def test_is_forgotten(self, name: str, value: float, part: Any, steady: np.ndarray) -> None:
-        out, _ = feed(spoiled(GOOD, name, value, part), *[GOOD] * 60, **BRISK)
-        assert_allclose(out, steady, rtol=1e-4, atol=1e-6)
-
-
-@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
-@every_part
-def test_faulty_colour_is_finite(value: float, part: Any) -> None:
-    (good,) = bumpy_sequence(PLAIN, count=1)
-    assert np.isfinite(feed(good, spoiled(good, "color", value, part), good)[0]).all()
-
-
-def test_firefly_is_bounded() -> None:
-    frame = spoiled(wall(), "color", 1e30, np.s_[20, 20])
-    out, _ = feed(frame, frame)
-    assert np.isfinite(out).all()
-    assert out.max() <= 1e15
 
 
 class TestStages:
