@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
@@ -11,9 +10,10 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from svgf_cl import Frame
-from svgf_cl.frame import CHANNELS, REQUIRED
-from tests.frames import SHAPE, bumpy_sequence
-from tests.hard.variants import VARIANTS, Variant
+from svgf_cl.frame import CHANNELS
+from tests.frames import bumpy_sequence
+from tests.hard.fields import Spoil, every_field, every_pixel, some_pixels, with_field
+from tests.hard.variants import Variant
 
 GARBAGE = (np.nan, np.inf, -np.inf, 1e30, -1e30, np.finfo(np.float32).max)
 
@@ -22,22 +22,6 @@ LIMITS = dict.fromkeys(CHANNELS, 1e10) | {"depth": 1e20, "motion": 1e6}
 COUNTS_AS = dict.fromkeys(CHANNELS, 0.0) | {"depth": np.inf, "motion": 1e6}
 
 LIGHT, EMISSION = 0.25, 0.125
-
-Change = Callable[[np.ndarray], np.ndarray]
-Spoil = Callable[[float, np.ndarray], np.ndarray]
-
-
-def every_pixel(value: float, field: np.ndarray) -> np.ndarray:
-    """A field of one value."""
-    return np.full_like(field, value)
-
-
-def some_pixels(value: float, field: np.ndarray) -> np.ndarray:
-    """The field with this value in each of its channels, in pixels apart."""
-    spoiled = field.copy()
-    for channel, place in enumerate(np.ndindex(field.shape[2:])):
-        spoiled[(5 + 7 * channel, 3 + 9 * channel, *place)] = value
-    return spoiled
 
 
 def substituted(name: str, field: np.ndarray) -> np.ndarray:
@@ -50,28 +34,12 @@ def substituted(name: str, field: np.ndarray) -> np.ndarray:
     return np.where(bad, np.float32(COUNTS_AS[name]), field)
 
 
-def with_field(frame: Frame, name: str, change: Change) -> Frame:
-    return replace(frame, **{name: change(getattr(frame, name))})
-
-
 def spoiled_sequence(variant: Variant, name: str, spoil: Spoil, values: Sequence[float] = GARBAGE) -> list[Frame]:
     """Good frames that all move elsewhere, after each but the last one that is spoiled."""
     frames = bumpy_sequence(variant.fields, count=2 * len(values) + 1)
     for number, value in enumerate(values):
         frames[1 + 2 * number] = with_field(frames[1 + 2 * number], name, partial(spoil, value))
     return frames
-
-
-every_field = pytest.mark.parametrize(
-    ("variant", "name"),
-    [
-        pytest.param(variant, name, id=f"{variant}, {name}")
-        for variant, chosen in VARIANTS.items()
-        for name in (*REQUIRED, *chosen.fields)
-        if name != "id"
-    ],
-    indirect=["variant"],
-)
 
 
 @every_field
@@ -100,8 +68,3 @@ def test_frame_is_forgotten_as_fast_as_a_black_one(variant: Variant, name: str) 
         missed = alpha * (1 - alpha) ** age + 4 * variant.rounding
         glow = EMISSION if age == 0 else 0
         assert_allclose(picture, LIGHT + EMISSION, rtol=0, atol=LIGHT * missed + glow)
-
-
-def test_every_channel_is_spoiled() -> None:
-    assert np.isnan(some_pixels(np.nan, np.zeros((*SHAPE, 3)))).sum(axis=(0, 1)).tolist() == [1, 1, 1]
-    assert np.isnan(some_pixels(np.nan, np.zeros(SHAPE))).sum() == 1

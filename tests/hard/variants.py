@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -31,6 +31,9 @@ class Variant:
     error : float
         Largest relative error of a pixel to the oracle over a sequence; two to three times what was measured on frames
         in which nothing fits anything else.
+    outshone : float
+        The same where a pixel shows nothing but a faint trace of others, brighter by many powers of ten: weights of
+        exp(-x) with x up to 80 multiply what rounding, or the fast weights of other levels, made of x.
     greatest, least : float, radiance
         What illumination saturates at, and the step below which it cannot be told from black.
     """
@@ -39,6 +42,7 @@ class Variant:
     signals: int
     rounding: float
     error: float
+    outshone: float
     greatest: float = 1e15
     least: float = 0.0
 
@@ -52,6 +56,11 @@ class Variant:
         light, emission = np.asarray(light, np.float32), np.asarray(emission, np.float32)
         lights = {"color": light + emission, "direct": 0.75 * light, "indirect": 0.25 * light, "emission": emission}
         return only(wall(shape, **lights | {"albedo": 1.0, "id": 1} | given), self.fields)
+
+    @property
+    def linear(self) -> Variant:
+        """The same without antialiasing, whose tone mapping no picture comes back from as bright as it was."""
+        return replace(self, settings=replace(self.settings, taa=False))
 
     def denoiser(self, shape: Shape = SHAPE, **kept: Any) -> Denoiser:
         """A denoiser with these settings."""
@@ -89,9 +98,9 @@ class Variant:
 
 
 # float32 rounds by 2^-24, 16-bit floats by 2^-11 at most, normals by 2^-16; fast weights are up to 6 % larger.
-PRECISE = {"rounding": 1e-6, "error": 1e-4}
-HALVES = {"rounding": 1e-3, "error": 1e-1, "greatest": 65504.0, "least": 2.0**-24}
-FAST = {"rounding": 1e-6, "error": 1e-1}
+PRECISE = {"rounding": 1e-6, "error": 1e-4, "outshone": 1e-3}
+HALVES = {"rounding": 1e-3, "error": 1e-1, "outshone": 1e-1, "greatest": 65504.0, "least": 2.0**-24}
+FAST = {"rounding": 1e-6, "error": 1e-1, "outshone": 2.0}
 
 VARIANTS = {
     "precise": Variant(Settings(), 1, **PRECISE),
