@@ -28,7 +28,7 @@ bench: device  ## time every kernel on every device, beside rival and error; rep
 	$(BIN)/python -m benchmarks --output out/bench
 
 docs: demo  ## make docs/accuracy.md, docs/scene_description.md and the pictures of README and of the built-in scenes again
-	$(BIN)/python benchmarks/accuracy.py
+	$(BIN)/python -m benchmarks.accuracy
 	$(BIN)/python scripts/picture.py
 	$(BIN)/python scripts/scene_description.py
 	$(BIN)/svgf-cl scenes -o docs/builtin_scenes.webp --size 320x180 --spp 128

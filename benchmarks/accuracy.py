@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks import steady_light
 from svgf_cl import Frame, Settings, devices
 from svgf_cl.accuracy import DECISION, SCALE_SHARE, Deviation, deviations
 from svgf_cl.bench import error_to_oracle
@@ -18,7 +19,7 @@ FRAMES = 6
 
 INTRODUCTION = f"""# Accuracy
 
-Made by `make docs` (`python benchmarks/accuracy.py`); do not edit.
+Made by `make docs` (`python -m benchmarks.accuracy`); do not edit.
 
 Every kernel is given its actual float32 input and held against the same function of `svgf_cl/reference.py` in float64.
 An error is relative: `|got - expected| / (|expected| + {SCALE_SHARE:g} * mean |expected|)`; of a
@@ -81,7 +82,8 @@ def section(report: devices.DeviceReport) -> str:
     worst, rms = error_to_oracle(Settings(), queue=queue)
     return (
         f"## {report.platform}\n\n{report.device}, {report.version}, driver {report.driver}\n\n{table(results)}\n\n"
-        f"Pipeline (6 frames of the closed-form room, 160x90): rms {rms:.1e}, largest {worst:.1e}.\n"
+        f"Pipeline (6 frames of the closed-form room, 160x90): rms {rms:.1e}, largest {worst:.1e}.\n\n"
+        f"{steady_light.INTRODUCTION}\n{steady_light.table(queue)}\n"
     )
 
 
