@@ -22,4 +22,4 @@ def test_deviation_of_steady_light_is_off_by_a_rounding_of_it(variant: Variant, 
         den.denoise(frame)
         oracle.denoise(frame)
     found, expected = np.sqrt(den.stage("moment_variance")), np.sqrt(oracle.stages["moment_variance"])
-    assert np.abs(found - expected).max() <= 0.25 * variant.rounding * STEADY
+    assert np.abs(found - expected).max() <= variant.rounding * STEADY
