@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import pyopencl as cl
 
-from svgf_cl.errors import SvgfError
+from svgf_cl.failures import allocate, check_room, lack_of_room
 from svgf_cl.memory import Slot
 from svgf_cl.passes import PREVIOUS
 from svgf_cl.planes import Layout
@@ -25,15 +25,24 @@ class Buffers:
     layout : Layout
     slots : sequence of Slot
         As `svgf_cl.memory.memory_slots` gives them.
+    copies : bool
+        Whether there is to be room for `copy_aside`.
+
+    Raises
+    ------
+    DeviceError
+        If the device has no room for all.
     """
 
-    def __init__(self, queue: cl.CommandQueue, layout: Layout, slots: Sequence[Slot]) -> None:
+    def __init__(self, queue: cl.CommandQueue, layout: Layout, slots: Sequence[Slot], *, copies: bool = False) -> None:
         self._queue = queue
         self._slots = {name: slot for slot in slots for name in slot.buffers}
-        self._memory = {
-            slot.name: self._filled(BLANK.get(slot.name, 0.0), layout.nbytes(slot.planes.depth)) for slot in slots
-        }
-        self._copies: dict[str, cl.Buffer] = {}
+        sizes = {slot.name: layout.nbytes(slot.planes.depth) for slot in slots}
+        kept = {name: sizes[slot.name] for name, slot in self._slots.items() if copies and not is_previous(name)}
+        needed = sum(sizes.values()) + sum(kept.values())
+        check_room(queue.device, needed)
+        self._memory = {name: self._filled(BLANK.get(name, 0.0), size, needed) for name, size in sizes.items()}
+        self._copies = {name: allocate(queue, size, needed) for name, size in kept.items()}
 
     @property
     def nbytes(self) -> int:
@@ -45,14 +54,12 @@ class Buffers:
 
     def begin_frame(self) -> None:
         """Turn what was written in the last frame into history."""
-        for previous in [name for name in self._memory if name.startswith(PREVIOUS)]:
+        for previous in [name for name in self._memory if is_previous(name)]:
             current = previous.removeprefix(PREVIOUS)
             self._memory[previous], self._memory[current] = self._memory[current], self._memory[previous]
 
     def copy_aside(self, name: str) -> None:
         """Have `read` find what a buffer holds now, though another takes its memory."""
-        if name not in self._copies:
-            self._copies[name] = allocate(self._queue, self[name].size)
         cl.enqueue_copy(self._queue, self._copies[name], self[name])
 
     def survives(self, name: str) -> bool:
@@ -66,23 +73,13 @@ class Buffers:
         cl.enqueue_copy(self._queue, result, buffer)
         return result
 
-    def _filled(self, value: float, nbytes: int) -> cl.Buffer:
-        buffer = allocate(self._queue, nbytes)
-        try:
+    def _filled(self, value: float, nbytes: int, needed: int) -> cl.Buffer:
+        buffer = allocate(self._queue, nbytes, needed)
+        with lack_of_room(self._queue.device, nbytes, needed):  # some drivers look for the room only now
             cl.enqueue_fill_buffer(self._queue, buffer, np.float32(value), 0, nbytes)
-        except cl.MemoryError as error:  # some drivers look for the room only now
-            raise out_of_memory(self._queue, nbytes) from error
         return buffer
 
 
-def allocate(queue: cl.CommandQueue, nbytes: int) -> cl.Buffer:
-    """A buffer of uninitialised memory; `SvgfError` where the device has no room."""
-    try:
-        return cl.Buffer(queue.context, cl.mem_flags.READ_WRITE, nbytes)
-    except (cl.MemoryError, cl.LogicError) as error:
-        raise out_of_memory(queue, nbytes) from error
-
-
-def out_of_memory(queue: cl.CommandQueue, nbytes: int) -> SvgfError:
-    """The error that says what was asked of which device."""
-    return SvgfError(f"the device {queue.device.name} has no room for a buffer of {nbytes / 2**20:.0f} MiB")
+def is_previous(name: str) -> bool:
+    """Whether a buffer holds what another of a pair held in the last frame."""
+    return name.startswith(PREVIOUS)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import itertools
-import operator
+import math
+import threading
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -12,19 +13,26 @@ import numpy as np
 import pyopencl as cl
 import pyopencl.array as cl_array
 
-from svgf_cl import devices, programs
+from svgf_cl import programs
+from svgf_cl.arguments import check_queue, check_settings, check_shape, check_tuning, held, layout_of
 from svgf_cl.buffers import Buffers
-from svgf_cl.errors import FrameError, SvgfError
-from svgf_cl.frame import Frame, Shape
+from svgf_cl.errors import FrameError, SvgfError, shown
+from svgf_cl.failures import allocate, opencl_errors
+from svgf_cl.frame import Frame, Shape, UserArray
 from svgf_cl.launch import Grid, Launch
 from svgf_cl.memory import memory_slots
 from svgf_cl.passes import OUT, Inputs, Pass, pipeline
-from svgf_cl.planes import Layout
 from svgf_cl.settings import Settings
 from svgf_cl.stages import StageView, stage_views
 from svgf_cl.storage import stored
-from svgf_cl.tuning import Tuning, best_tuning
-from svgf_cl.user_arrays import UserArray, UserArrays, check_out
+from svgf_cl.tuning import Tuning
+from svgf_cl.user_arrays import UserArrays, check_out
+from svgf_cl.waiting import pending
+
+# What to do after an error of the device.
+NOT_BEGUN = "the frame was not begun, so the next one goes on from the last; if this stays, make a new Denoiser"
+BROKEN_OFF = "the past is forgotten, as by reset, so the next frame begins anew; if this stays, make a new Denoiser"
+NOT_READ = "if this stays, make a new Denoiser"
 
 
 @dataclass(frozen=True)
@@ -43,7 +51,9 @@ class Plan:
 
 
 class Denoiser:
-    """Denoises a sequence of frames of one size, one call a frame; for one thread at a time.
+    """Denoises a sequence of frames of one size, one call a frame.
+
+    Threads may share one: a call waits for that of another thread to end. Denoisers do not disturb each other.
 
     Parameters
     ----------
@@ -66,8 +76,8 @@ class Denoiser:
     Raises
     ------
     SvgfError
-        If `shape` is no image, `queue` is not in order, no OpenCL device works (`DeviceError`), or `tuning` is not for
-        the device.
+        If `shape` is no image, `queue` is not in order or dead, no OpenCL device works (`DeviceError`), or `tuning` is
+        not for the device.
 
     Examples
     --------
@@ -88,11 +98,13 @@ class Denoiser:
         self.settings = check_settings(settings)
         self.queue = check_queue(queue)
         self.tuning = check_tuning(tuning, self.queue.device)
+        self._queue = held(self.queue)
         self._layout = layout_of(self.shape, self.tuning.row_alignment)
         self._keep_stages = keep_stages
-        self._arrays = UserArrays(self.queue)
+        self._arrays = UserArrays(self._queue)
         self._plan: Plan | None = None
         self._events: list[tuple[str, cl.Event]] = []
+        self._turn = threading.RLock()
 
     def denoise(self, frame: Frame, *, out: Any = None, wait_for: Sequence[cl.Event] = ()) -> Any:
         """Filter the next frame of the sequence.
@@ -115,45 +127,47 @@ class Denoiser:
         Raises
         ------
         FrameError
-            If a field is missing, of another shape or type, or on another context, if the set of fields changed, or if
-            `out` is the memory of a field.
-        SvgfError
-            If the device has no room (on the first frame), or cannot build a kernel (`DeviceError`).
+            If a field is missing, of another shape or type, or on another context, if the set of fields changed, if
+            `out` is the memory of a field, or if an event failed. The call counts as not made.
+        DeviceError
+            If the device has no room, or cannot build a kernel: the call counts as not made. If it breaks off in the
+            middle of the frame: the past is forgotten, as by `reset`.
         """
+        if not isinstance(frame, Frame):
+            raise SvgfError(f"denoise(frame): expected a Frame, got {type(frame).__name__}")
         frame.check(self.shape)
+        if out is not None:
+            check_out(out, (*self.shape, 3))
         inputs = Inputs.of(frame)
-        result = self._result(frame) if out is None else out
-        check_out(result, (*self.shape, 3))
         fields = {name: getattr(frame, name) for name in inputs.fields}
-        buffers = self._arrays.buffers(fields, result)
-        plan = self._ready(inputs)
-        with self._arrays.in_use(buffers, result):
-            if pending := [*wait_for, *unfinished([*fields.values(), result], self.queue)]:
-                cl.enqueue_barrier(self.queue, wait_for=pending)
-            self._events = [
-                (launch.entry.name, self._run(launch, plan.planes, buffers)) for launch in plan.next_frame()
-            ]
-        if isinstance(result, cl_array.Array):
-            result.add_event(self._events[-1][1])
-            self.queue.flush()  # whoever waits for that event on another queue must not wait for ever
+        with self._turn:
+            with opencl_errors(self._queue.device, "denoise", NOT_BEGUN):
+                plan = self._ready(inputs)
+                result = self._result(frame) if out is None else out
+                events = pending(wait_for, {**fields, OUT: result}, self._queue)
+                buffers = self._arrays.buffers(fields, result)
+            self._filter(plan, buffers, result, events)
         return result
 
     def reset(self) -> None:
         """Forget the past: call it at a camera cut, or to send frames with other fields."""
-        self._plan = None
-        self._events = []
+        with self._turn:
+            self._plan = None
+            self._events = []
 
     def profile(self) -> dict[str, float]:
         """Milliseconds on the device of each pass of the last frame, in order, from OpenCL events."""
-        if not self.queue.properties & cl.command_queue_properties.PROFILING_ENABLE:
+        if not self._queue.properties & cl.command_queue_properties.PROFILING_ENABLE:
             raise SvgfError("profile(): the queue was made without PROFILING_ENABLE")
-        self.queue.finish()
-        return {name: 1e-6 * (event.profile.end - event.profile.start) for name, event in self._events}
+        with self._turn, opencl_errors(self._queue.device, "profile", NOT_READ):
+            self._queue.finish()
+            return {name: 1e-6 * (event.profile.end - event.profile.start) for name, event in self._events}
 
     @property
     def stages(self) -> list[str]:
         """Names that `stage` understands; empty before the first frame."""
-        return list(self._plan.views) if self._plan else []
+        with self._turn:
+            return list(self._plan.views) if self._plan else []
 
     def stage(self, name: str) -> np.ndarray:
         """An intermediate result of the last frame, for debugging.
@@ -172,32 +186,48 @@ class Denoiser:
         SvgfError
             If there is no such stage, or its memory went to a later stage of the frame.
         """
-        if self._plan is None or name not in self._plan.views:
-            raise SvgfError(f"stage: expected one of {', '.join(self.stages) or 'none before a frame'}; got {name!r}")
-        view = self._plan.views[name]
-        if not self._plan.planes.survives(view.buffer):
-            raise SvgfError(f"stage: {name!r} was overwritten by a later pass; use Denoiser(..., keep_stages=True)")
-        return view.of(self._layout.crop(self._plan.planes.read(view.buffer).view(view.dtype)))
+        with self._turn, opencl_errors(self._queue.device, "stage", NOT_READ):
+            if self._plan is None or not isinstance(name, str) or name not in self._plan.views:
+                known = ", ".join(self.stages) or "none before a frame"
+                raise SvgfError(f"stage: expected one of {known}; got {shown(name)}")
+            view = self._plan.views[name]
+            if not self._plan.planes.survives(view.buffer):
+                raise SvgfError(f"stage: {name!r} was overwritten by a later pass; use Denoiser(..., keep_stages=True)")
+            return view.of(self._layout.crop(self._plan.planes.read(view.buffer).view(view.dtype)))
 
     @property
     def nbytes(self) -> int:
         """Device memory held for planes, in bytes; 0 before the first frame."""
-        return self._plan.planes.nbytes if self._plan else 0
+        with self._turn:
+            return self._plan.planes.nbytes if self._plan else 0
 
     def _ready(self, inputs: Inputs) -> Plan:
-        """The plan for these inputs, made on the first frame: kernels built, history blank."""
+        """The plan for these inputs, made for a first frame: kernels built, history blank."""
         if self._plan is None:
             passes = pipeline(inputs, self.settings)
             planes = self._planes(passes, inputs)
             turns = itertools.cycle(self._turns(passes, inputs, planes))
-            self._plan = Plan(inputs, planes, turns, stage_views(passes, inputs, self.settings))
+            return Plan(inputs, planes, turns, stage_views(passes, inputs, self.settings))
         if inputs != self._plan.inputs:
             raise FrameError("fields", f"{self._plan.inputs} as before, or a call of reset", str(inputs))
         return self._plan
 
+    def _filter(self, plan: Plan, buffers: dict[str, cl.Buffer], result: UserArray, events: list[cl.Event]) -> None:
+        """Run the passes; where they break off the past is forgotten, as half a frame is no history."""
+        self.reset()
+        with opencl_errors(self._queue.device, "denoise", BROKEN_OFF):
+            with self._arrays.in_use(buffers, result):
+                if events:
+                    cl.enqueue_barrier(self._queue, wait_for=events)
+                done = [(launch.entry.name, self._run(launch, plan.planes, buffers)) for launch in plan.next_frame()]
+            if isinstance(result, cl_array.Array):
+                result.add_event(done[-1][1])
+                self._queue.flush()  # whoever waits for that event on another queue must not wait for ever
+        self._plan, self._events = plan, done
+
     def _planes(self, passes: tuple[Pass, ...], inputs: Inputs) -> Buffers:
         sizes = {name: stored(name, inputs, self.settings) for entry in passes for name in entry.writes if name != OUT}
-        return Buffers(self.queue, self._layout, memory_slots(passes, sizes))
+        return Buffers(self._queue, self._layout, memory_slots(passes, sizes), copies=self._keep_stages)
 
     def _turns(self, passes: tuple[Pass, ...], inputs: Inputs, planes: Buffers) -> list[tuple[Launch, ...]]:
         """The launches of odd and of even frames: this frame's buffers and the history take turns."""
@@ -209,18 +239,18 @@ class Denoiser:
 
     def _launch(self, entry: Pass, inputs: Inputs, planes: Buffers) -> Launch:
         defines = {"VW": self.tuning.vector_width, **inputs.defines, **self.settings.defines}
-        program = programs.build(self.queue.context, self.queue.device, entry.stage, defines)
+        program = programs.build(self._queue.context, self._queue.device, entry.stage, defines)
         kernel = cl.Kernel(program, entry.kernel)
         scalars = [] if entry.step is None else [np.int32(entry.step)]
         scalars += [np.float32(getattr(self.settings, name)) for name in entry.settings]
         user = {*inputs.fields, OUT}
         buffers = [name if name in user else planes[name] for name in (*entry.reads, *entry.writes)]
-        work_group = fitting(self.tuning.work_group, kernel, self.queue.device)
+        work_group = fitting(self.tuning.work_group, kernel, self._queue.device)
         work_items = self._layout.work_items(self.tuning.vector_width, work_group, entry.step or 1)
         return Launch(entry, kernel, (self._layout.size, *scalars, *buffers), work_items, work_group)
 
     def _run(self, launch: Launch, planes: Buffers, user: dict[str, cl.Buffer]) -> cl.Event:
-        event = launch.enqueue(self.queue, user)
+        event = launch.enqueue(self._queue, user)
         for name in launch.entry.writes:
             if self._keep_stages and name != OUT:
                 planes.copy_aside(name)
@@ -230,43 +260,9 @@ class Denoiser:
         """A new array for the result, of the same kind as the frame's."""
         shape = (*self.shape, 3)
         if all(isinstance(value, cl_array.Array) for value in frame.present().values()):
-            return cl_array.empty(self.queue, shape, np.float32)
+            nbytes = 4 * math.prod(shape)
+            return cl_array.Array(self._queue, shape, np.float32, data=allocate(self._queue, nbytes, nbytes))
         return np.empty(shape, np.float32)
-
-
-def unfinished(arrays: Sequence[UserArray], queue: cl.CommandQueue) -> Iterator[cl.Event]:
-    """Events of device arrays that may still be being computed: on another queue, as this one keeps its order."""
-    for value in arrays:
-        if isinstance(value, cl_array.Array):
-            yield from (event for event in value.events if event.command_queue != queue)
-
-
-def check_settings(settings: Settings | None) -> Settings:
-    """The defaults for None; `SvgfError` for anything that is not `Settings`."""
-    if settings is None:
-        return Settings()
-    if not isinstance(settings, Settings):
-        raise SvgfError(f"Denoiser: expected settings=Settings(...), got {settings!r}")
-    return settings
-
-
-def check_queue(queue: cl.CommandQueue | None) -> cl.CommandQueue:
-    """A queue on the default device for None; `SvgfError` for one that may run the passes out of order."""
-    if queue is None:
-        return devices.default_queue()
-    if queue.properties & cl.command_queue_properties.OUT_OF_ORDER_EXEC_MODE_ENABLE:
-        raise SvgfError("Denoiser: expected an in-order queue, got one with OUT_OF_ORDER_EXEC_MODE_ENABLE")
-    return queue
-
-
-def check_tuning(tuning: Tuning | None, device: cl.Device) -> Tuning:
-    """The best known for None; `SvgfError` for one that is not for this device."""
-    if tuning is None:
-        return best_tuning(device)
-    if not isinstance(tuning, Tuning):
-        raise SvgfError(f"Denoiser: expected tuning=Tuning(...), got {tuning!r}")
-    tuning.check(device)
-    return tuning
 
 
 def fitting(work_group: Grid, kernel: cl.Kernel, device: cl.Device) -> Grid:
@@ -274,22 +270,3 @@ def fitting(work_group: Grid, kernel: cl.Kernel, device: cl.Device) -> Grid:
     most = kernel.get_work_group_info(cl.kernel_work_group_info.WORK_GROUP_SIZE, device)
     along = min(work_group[0], most)
     return along, min(work_group[1], most // along)
-
-
-def layout_of(shape: Shape, row_alignment: int) -> Layout:
-    """The layout of an image; `SvgfError` where it is too large for the kernels' indices."""
-    layout = Layout(*shape, row_alignment)
-    if not layout.indexable:
-        raise SvgfError(f"Denoiser: expected an image of at most about 16000 x 16000 pixels, got {shape!r}")
-    return layout
-
-
-def check_shape(shape: Shape) -> Shape:
-    """(height, width) as plain integers; `SvgfError` unless both are whole numbers of at least 1."""
-    try:
-        height, width = (operator.index(side) for side in shape)
-    except (TypeError, ValueError) as error:
-        raise SvgfError(f"Denoiser: expected shape (height, width), got {shape!r}") from error
-    if height < 1 or width < 1:
-        raise SvgfError(f"Denoiser: expected a shape of at least 1 x 1 pixel, got {shape!r}")
-    return height, width

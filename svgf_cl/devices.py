@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import functools
 import os
+import threading
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -34,6 +35,8 @@ INSTALL_HINT = """Install one of:
   Debian, Ubuntu:       apt-get install pocl-opencl-icd
   x86-64 Linux, no root: pip install '.[cpu]' in a clone of svgf_cl
   a GPU:                its vendor's driver with OpenCL"""
+
+_lock = threading.Lock()  # threads that make their first queue at once shall share its context
 
 
 @dataclass(frozen=True)
@@ -175,7 +178,9 @@ def create_queue(device: cl.Device) -> cl.CommandQueue:
     -------
     pyopencl.CommandQueue
     """
-    return cl.CommandQueue(_context(device), device, properties=cl.command_queue_properties.PROFILING_ENABLE)
+    with _lock:
+        context = _context(device)
+    return cl.CommandQueue(context, device, properties=cl.command_queue_properties.PROFILING_ENABLE)
 
 
 @functools.cache

@@ -1,5 +1,7 @@
 """The errors a user can meet. Every message says what was expected, what came, and what to do next."""
 
+LONGEST_SHOWN = 80  # characters of a wrong value that a message repeats
+
 
 class SvgfError(ValueError):
     """Base of every error that svgf_cl and its tracer raise on purpose; the command line prints it and exits with 2."""
@@ -18,7 +20,7 @@ class SettingsError(SvgfError):
 
 
 class DeviceError(SvgfError):
-    """No OpenCL device works, or a kernel does not build on the one in use."""
+    """No OpenCL device works, or the one in use cannot build a kernel, has no room, or broke off."""
 
 
 class SequenceError(SvgfError):
@@ -28,3 +30,12 @@ class SequenceError(SvgfError):
 def one_line(message: object) -> str:
     """`message` without its line breaks: what libraries say goes into errors that are one line."""
     return " ".join(str(message).split())
+
+
+def shown(value: object) -> str:
+    """What came, for a message: on one line, however long, and even where it cannot be written out."""
+    try:
+        text = one_line(repr(value))
+    except Exception:  # a whole number of 5000 digits, say
+        return f"one of type {type(value).__name__} that cannot be shown"
+    return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}..."

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import pyopencl.array as cl_array
 
 from svgf_cl.errors import FrameError
 
 Shape = tuple[int, int]
+UserArray = np.ndarray | cl_array.Array
 
 # Number of channels each field may have; 0 stands for a plain (H, W) array.
 CHANNELS: dict[str, tuple[int, ...]] = {
@@ -90,7 +92,8 @@ class Frame:
     def shape(self) -> Shape:
         """(height, width), read from `depth`."""
         self.check_presence()
-        shape = np.shape(self.depth)
+        check_array("depth", self.depth)
+        shape = self.depth.shape
         if len(shape) != 2:
             raise FrameError("depth", "an array of shape (H, W)", f"shape {shape}")
         return int(shape[0]), int(shape[1])
@@ -115,14 +118,19 @@ class Frame:
 
 def check_field(name: str, value: Any, shape: Shape) -> None:
     """Raise `FrameError` unless `value` can be field `name` of a frame of this (height, width)."""
-    if not (hasattr(value, "shape") and hasattr(value, "dtype")):
-        raise FrameError(name, "a numpy.ndarray or pyopencl.array.Array", type(value).__name__)
+    check_array(name, value)
     allowed = [shape + ((channels,) if channels else ()) for channels in CHANNELS[name]]
     if tuple(value.shape) not in allowed:
         raise FrameError(name, "shape " + " or ".join(map(str, allowed)), f"shape {tuple(value.shape)}")
     kinds, wanted = ("ui", "integers (uint32)") if name == "id" else ("f", "floating point (float32)")
-    if np.dtype(value.dtype).kind not in kinds:
+    if value.dtype.kind not in kinds:
         raise FrameError(name, wanted, f"dtype {value.dtype}")
+
+
+def check_array(name: str, value: Any) -> None:
+    """Raise `FrameError` unless `value` is of a type that the denoiser reads."""
+    if not isinstance(value, UserArray):
+        raise FrameError(name, "a numpy.ndarray or pyopencl.array.Array", type(value).__name__)
 
 
 def extent(shape: Shape) -> str:

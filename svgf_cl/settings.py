@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from numbers import Integral, Real
 
-from svgf_cl.errors import SettingsError
+from svgf_cl.errors import SettingsError, shown
 
 # (least, greatest) allowed value of each numeric setting.
 RANGES: dict[str, tuple[float, float]] = {
@@ -102,10 +102,12 @@ class Settings:
             if field.name in RANGES:
                 check_number(field.name, value, whole=isinstance(field.default, int))
             elif field.name in CHOICES:
-                if value not in CHOICES[field.name]:
-                    raise SettingsError(f"Settings.{field.name}: expected {describe_choice(field.name)}, got {value!r}")
+                if not isinstance(value, str) or value not in CHOICES[field.name]:
+                    raise SettingsError(
+                        f"Settings.{field.name}: expected {describe_choice(field.name)}, got {shown(value)}"
+                    )
             elif not isinstance(value, bool):
-                raise SettingsError(f"Settings.{field.name}: expected True or False, got {value!r}")
+                raise SettingsError(f"Settings.{field.name}: expected True or False, got {shown(value)}")
 
     @property
     def defines(self) -> dict[str, int]:
@@ -132,4 +134,4 @@ def check_number(name: str, value: object, *, whole: bool) -> None:
     kind = "a whole number" if whole else "a number"
     number = isinstance(value, Integral if whole else Real) and not isinstance(value, bool)
     if not number or not low <= value <= high:  # type: ignore[operator]
-        raise SettingsError(f"Settings.{name}: expected {kind} in {low:g}..{high:g}, got {value!r}")
+        raise SettingsError(f"Settings.{name}: expected {kind} in {low:g}..{high:g}, got {shown(value)}")

@@ -14,7 +14,7 @@ import pyopencl as cl
 
 from svgf_cl import programs
 from svgf_cl.cache import cache_folder, device_key
-from svgf_cl.errors import DeviceError, SvgfError
+from svgf_cl.errors import DeviceError, SvgfError, shown
 from svgf_cl.files import make_folder, read_json, written_whole
 from svgf_cl.planes import PAGE, ROW_ALIGNMENT, WIDEST_VECTOR
 
@@ -51,15 +51,16 @@ class Tuning:
     row_alignment: int = ROW_ALIGNMENT
 
     def __post_init__(self) -> None:
-        if self.vector_width not in VECTOR_WIDTHS:
-            raise SvgfError(f"Tuning.vector_width: expected one of {VECTOR_WIDTHS}, got {self.vector_width!r}")
+        if not isinstance(self.vector_width, int) or self.vector_width not in VECTOR_WIDTHS:
+            raise SvgfError(f"Tuning.vector_width: expected one of {VECTOR_WIDTHS}, got {shown(self.vector_width)}")
         group = self.work_group
         if not (isinstance(group, tuple) and len(group) == 2 and all(isinstance(n, int) and n >= 1 for n in group)):
-            raise SvgfError(f"Tuning.work_group: expected two whole numbers >= 1, got {group!r}")
-        if self.row_alignment not in range(WIDEST_VECTOR, PAGE // 2 + 1, WIDEST_VECTOR):
+            raise SvgfError(f"Tuning.work_group: expected two whole numbers >= 1, got {shown(group)}")
+        alignments = range(WIDEST_VECTOR, PAGE // 2 + 1, WIDEST_VECTOR)
+        if not isinstance(self.row_alignment, int) or self.row_alignment not in alignments:
             raise SvgfError(
                 f"Tuning.row_alignment: expected a multiple of {WIDEST_VECTOR} in {WIDEST_VECTOR}..{PAGE // 2}, "
-                f"got {self.row_alignment!r}"
+                f"got {shown(self.row_alignment)}"
             )
 
     def __str__(self) -> str:

@@ -10,11 +10,10 @@ import numpy as np
 import pyopencl as cl
 import pyopencl.array as cl_array
 
-from svgf_cl.buffers import allocate, out_of_memory
 from svgf_cl.errors import FrameError
+from svgf_cl.failures import allocate, lack_of_room
+from svgf_cl.frame import UserArray, check_array
 from svgf_cl.passes import OUT
-
-UserArray = np.ndarray | cl_array.Array
 
 
 class UserArrays:
@@ -35,7 +34,7 @@ class UserArrays:
         ------
         FrameError
             If an Array is not plain memory of this queue's context, or the result is the memory of a field.
-        SvgfError
+        DeviceError
             If the device has no room.
         """
         arrays = {OUT: result} | {name: as_read(name, value) for name, value in fields.items()}
@@ -73,6 +72,8 @@ class UserArrays:
             raise FrameError(name, "an Array in the context of Denoiser(queue=...)", "one of another context")
         if not isinstance(value.base_data, cl.MemoryObjectHolder):
             raise FrameError(name, "an Array in a buffer or memory pool", type(value.base_data).__name__)
+        if value.base_data.size < value.nbytes:
+            raise FrameError(name, f"a buffer of {value.nbytes} bytes", f"one of {value.base_data.size}")
         return cast("cl.Buffer", value.base_data)  # one from a pool is used just like it
 
     def _wrapped(self, arrays: Mapping[str, np.ndarray]) -> dict[str, cl.Buffer]:
@@ -86,7 +87,7 @@ class UserArrays:
     def _copied(self, name: str, value: np.ndarray) -> cl.Buffer:
         """A buffer that stays with the denoiser; a field's values are in it when this returns."""
         if name not in self._kept or self._kept[name].size != value.nbytes:
-            self._kept[name] = allocate(self._queue, value.nbytes)
+            self._kept[name] = allocate(self._queue, value.nbytes, value.nbytes)
         if name != OUT:
             cl.enqueue_copy(self._queue, self._kept[name], value, is_blocking=True)
         return self._kept[name]
@@ -116,10 +117,8 @@ def wrap(queue: cl.CommandQueue, value: np.ndarray) -> cl.Buffer:
     It says nothing of reading or writing: marked as read only, arrays that do not begin at a multiple of 128 bytes
     would be copied by Intel's runtime, at 10 ms for an image of 720p.
     """
-    try:
+    with lack_of_room(queue.device, value.nbytes, value.nbytes):
         return cl.Buffer(queue.context, cl.mem_flags.USE_HOST_PTR, hostbuf=value)
-    except (cl.MemoryError, cl.LogicError) as error:
-        raise out_of_memory(queue, value.nbytes) from error
 
 
 def check_apart(buffers: Mapping[str, cl.Buffer]) -> None:
@@ -131,8 +130,7 @@ def check_apart(buffers: Mapping[str, cl.Buffer]) -> None:
 
 def check_out(out: Any, shape: tuple[int, int, int]) -> None:
     """Raise `FrameError` unless a result of this shape can be written to `out`."""
-    if not isinstance(out, np.ndarray | cl_array.Array):
-        raise FrameError("out", "a numpy.ndarray or pyopencl.array.Array", type(out).__name__)
+    check_array("out", out)
     if tuple(out.shape) != shape or out.dtype != np.float32:
         raise FrameError("out", f"shape {shape}, float32", f"shape {tuple(out.shape)}, {out.dtype}")
     if not out.flags.c_contiguous or (isinstance(out, np.ndarray) and not out.flags.writeable):

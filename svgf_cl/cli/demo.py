@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from svgf_cl.cli.console import progress_bar, show, show_times, tracked
-from svgf_cl.cli.options import Output, Size, parse_size
+from svgf_cl.cli.options import MAX_FRAMES, Output, Size, parse_size
 from svgf_cl.cli.scenes import require_tracer
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.errors import SvgfError
@@ -19,7 +19,7 @@ from svgf_cl.metrics import SSIM_WINDOW, Metrics, require_ssim
 
 def demo(
     output: Output = Path("out/demo"),
-    frames: Annotated[int, typer.Option(metavar="N", min=1, help="Number of frames.")] = 24,
+    frames: Annotated[int, typer.Option(metavar="N", min=1, max=MAX_FRAMES, help="Number of frames.")] = 24,
     size: Size = "640x360",
     reference_spp: Annotated[
         int,

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from svgf_cl.errors import SettingsError, SvgfError
+from svgf_cl.errors import SettingsError, SvgfError, shown
 from svgf_cl.settings import CHOICES, RANGES, Settings, describe_choice
 
 DEFAULTS: dict[str, bool | int | float | str] = vars(Settings())
@@ -18,6 +18,7 @@ SWITCHES = {"true": True, "on": True, "1": True, "false": False, "off": False, "
 
 # A slip of the hand beyond it: of so many pixels squared, one plane of float4 takes 16 GiB.
 MAX_SIDE = 32768
+MAX_FRAMES = 1_000_000  # eleven hours at 24 a second
 MAX_STOPS = 64
 
 
@@ -45,9 +46,9 @@ Size = Annotated[str, typer.Option(metavar="WxH", help="Width and height in pixe
 
 def parse_size(text: str) -> tuple[int, int]:
     """Read ``640x360`` as (height, width)."""
-    match = re.fullmatch(r"([1-9]\d*)x([1-9]\d*)", text)
+    match = re.fullmatch(r"([1-9]\d{,5})x([1-9]\d{,5})", text, re.ASCII)
     if not match:
-        raise SvgfError(f"--size: expected WIDTHxHEIGHT in pixels such as 640x360, got {text!r}")
+        raise SvgfError(f"--size: expected WIDTHxHEIGHT in pixels such as 640x360, got {shown(text)}")
     width, height = int(match[1]), int(match[2])
     if max(width, height) > MAX_SIDE:
         raise SvgfError(f"--size: expected at most {MAX_SIDE} pixels a side, got {text}")

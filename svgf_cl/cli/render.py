@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from svgf_cl.cli.console import kept_of, share_bar, tracked
-from svgf_cl.cli.options import Output, Size, parse_size
+from svgf_cl.cli.options import MAX_FRAMES, Output, Size, parse_size
 from svgf_cl.cli.scenes import open_scene, read_sky, require_tracer
 from svgf_cl.files import make_folder
 from svgf_cl.sequence import check_leftovers, frame_path, kept_frame, write_frame
@@ -42,7 +42,7 @@ SCHEDULER_HELP = "Render on the workers of the Dask scheduler there, for example
 def render(
     scene: Annotated[str, typer.Argument(metavar="SCENE", help=SCENE_HELP)],
     output: Output,
-    frames: Annotated[int | None, typer.Option(metavar="N", min=1, help=FRAMES_HELP)] = None,
+    frames: Annotated[int | None, typer.Option(metavar="N", min=1, max=MAX_FRAMES, help=FRAMES_HELP)] = None,
     spp: Annotated[int, typer.Option(metavar="N", min=1, help="Samples per pixel of a frame.")] = 1,
     size: Size = "640x360",
     camera: Annotated[list[str], typer.Option(metavar="TEXT", help=CAMERA_HELP)] = [],  # noqa: B006

@@ -244,24 +244,3 @@ class TestProfile:
         den.denoise(wall(TINY))
         with pytest.raises(SvgfError, match="PROFILING_ENABLE"):
             den.profile()
-
-
-def test_queue_is_the_one_given(queue: cl.CommandQueue) -> None:
-    assert Denoiser(TINY, queue=queue).queue is queue
-
-
-@pytest.mark.parametrize("shape", [(np.int64(2), np.uint8(3)), [2, 3], np.array([2, 3])], ids=str)
-def test_shape_may_be_any_two_whole_numbers(shape: Any) -> None:
-    assert Denoiser(shape).shape == (2, 3)
-
-
-@pytest.mark.parametrize("shape", [None, 5, (5,), (5, 5, 3), (5.0, 5.0), "ab"], ids=str)
-def test_shape_must_be_two_whole_numbers(shape: Any) -> None:
-    with pytest.raises(SvgfError, match=r"expected shape \(height, width\), got"):
-        Denoiser(shape)
-
-
-@pytest.mark.parametrize("shape", [(0, 5), (5, 0), (-1, 5)])
-def test_shape_must_hold_a_pixel(shape: Shape) -> None:
-    with pytest.raises(SvgfError, match="at least 1 x 1 pixel, got"):
-        Denoiser(shape)

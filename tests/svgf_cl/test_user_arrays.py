@@ -16,8 +16,9 @@ import pyopencl.tools as cl_tools
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from svgf_cl import Denoiser, Frame, FrameError, Settings, SvgfError, user_arrays
+from svgf_cl import Denoiser, Frame, FrameError, Settings, user_arrays
 from svgf_cl.frame import CARRIED, CHANNELS
+from tests.arrays import big_endian, mapped_file, read_only, strided, unaligned
 from tests.frames import FULL, PLAIN, SHAPE, bumpy_sequence, wall
 
 FRAME = bumpy_sequence(FULL, count=1)[0]
@@ -52,35 +53,6 @@ def mapped(frame: Frame, change: Callable[[np.ndarray], Any]) -> Frame:
 
 def on_device(frame: Frame, queue: cl.CommandQueue) -> Frame:
     return mapped(frame, lambda value: cl_array.to_device(queue, value))
-
-
-def strided(value: np.ndarray) -> np.ndarray:
-    """The same values as every other element of a larger array."""
-    return np.repeat(value, 2, axis=1)[:, ::2]
-
-
-def read_only(value: np.ndarray) -> np.ndarray:
-    value = value.copy()
-    value.flags.writeable = False
-    return value
-
-
-def unaligned(value: np.ndarray) -> np.ndarray:
-    """The same values, one byte off."""
-    memory = np.empty(value.nbytes + 1, np.uint8)
-    odd = memory[1:].view(value.dtype).reshape(value.shape)
-    odd[:] = value
-    return odd
-
-
-def mapped_file(value: np.ndarray, path: Path) -> np.ndarray:
-    """The same values in pages that nobody can write to, 8 bytes off their beginning."""
-    np.concatenate([np.zeros(2, value.dtype), value.ravel()]).tofile(path)
-    return np.memmap(path, value.dtype, "r", 8, value.shape)
-
-
-def big_endian(value: np.ndarray) -> np.ndarray:
-    return value.astype(value.dtype.newbyteorder(">"))
 
 
 class TestInput:
@@ -303,12 +275,6 @@ def test_values_beyond_float32_are_no_light(den: Denoiser) -> None:
     assert_allclose(den.denoise(replace(wall(), color=color)), 0)
 
 
-@pytest.mark.parametrize("side", [17_000, 10**6])
-def test_image_beyond_32_bit_indices_is_refused(side: int, queue: cl.CommandQueue) -> None:
-    with pytest.raises(SvgfError, match="at most about 16000 x 16000"):
-        Denoiser((side, side), queue=queue)
-
-
 def test_arrays_from_a_memory_pool_are_taken(expected: np.ndarray, den: Denoiser) -> None:
     pool = cl_tools.MemoryPool(cl_tools.ImmediateAllocator(den.queue))
     frame = mapped(FRAME, lambda value: cl_array.to_device(den.queue, value, allocator=pool))
@@ -345,20 +311,6 @@ def test_a_result_knows_when_it_is_ready(den: Denoiser) -> None:
     out = den.denoise(on_device(FRAME, den.queue))
     assert out.events
     cl.wait_for_events(out.events)
-
-
-def test_an_out_of_order_queue_is_refused(queue: cl.CommandQueue) -> None:
-    unordered = cl.command_queue_properties.OUT_OF_ORDER_EXEC_MODE_ENABLE
-    if not queue.device.queue_properties & unordered:
-        pytest.skip(f"{queue.device.name} has no out-of-order queues")
-    with pytest.raises(SvgfError, match="in-order"):
-        Denoiser(SHAPE, queue=cl.CommandQueue(queue.context, properties=unordered))
-
-
-@pytest.mark.parametrize("settings", [{"taa": True}, "fast", {}])
-def test_settings_must_be_settings(settings: Any, queue: cl.CommandQueue) -> None:
-    with pytest.raises(SvgfError, match="expected settings="):
-        Denoiser(SHAPE, queue=queue, settings=settings)
 
 
 def test_a_refused_first_frame_leaves_no_trace(expected: np.ndarray, den: Denoiser) -> None:

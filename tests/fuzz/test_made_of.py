@@ -1,0 +1,70 @@
+"""Whatever a denoiser, its settings or its tuning are made of: they are made, or an error says what was expected."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pyopencl as cl
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from svgf_cl import Denoiser, Settings, SettingsError, SvgfError, Tuning
+from tests.fuzz.effort import effort
+
+anything = st.one_of(
+    st.none(),
+    st.booleans(),
+    st.integers(),
+    st.sampled_from((10**5000, -(10**5000), np.int64(3), np.float16(0.5), np.nan, np.True_)),
+    st.floats(),
+    st.complex_numbers(),
+    st.text(),
+    st.binary(),
+    st.builds(Fraction, st.integers(), st.integers(1)),
+    st.sampled_from((Decimal("0.5"), Decimal("NaN"))),
+    st.lists(st.integers(), max_size=3),
+    st.tuples(st.integers(), st.integers()),
+    st.sampled_from(("precise", "3x3")).map(lambda word: np.array([word, word])),
+    st.builds(np.zeros, st.lists(st.integers(0, 2), max_size=3)),
+    st.builds(object),
+)
+
+
+@effort()
+@given(name=st.sampled_from([field.name for field in fields(Settings)]), value=anything)
+def test_settings(name: str, value: Any) -> None:
+    try:
+        made = Settings(**{name: value})
+    except SettingsError as error:
+        refusal = str(error)
+    else:
+        assert np.isfinite(float(getattr(made, name))) if name not in ("taps", "precision") else getattr(made, name)
+        return
+    assert refusal.startswith(f"Settings.{name}: expected ")
+    assert ", got " in refusal
+    assert len(refusal) < 200
+
+
+@effort()
+@given(name=st.sampled_from([field.name for field in fields(Tuning)]), value=anything)
+def test_tuning(name: str, value: Any) -> None:
+    right = {"vector_width": 4, "work_group": (16, 1)}
+    try:
+        Tuning(**{**right, name: value})
+    except SvgfError as error:
+        assert str(error).startswith(f"Tuning.{name}: expected ")  # noqa: PT017
+        assert len(str(error)) < 200  # noqa: PT017
+
+
+@effort()
+@given(name=st.sampled_from(("shape", "settings", "queue", "tuning")), value=anything)
+def test_denoiser(queue: cl.CommandQueue, name: str, value: Any) -> None:
+    right = {"shape": (2, 3), "queue": queue}
+    if name == "shape" or value is not None:
+        with pytest.raises(SvgfError, match=r"^Denoiser: expected .*, got "):
+            Denoiser(**{**right, name: value})
