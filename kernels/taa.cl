@@ -44,16 +44,16 @@ typedef struct {
 // pixels of a wall.
 INLINE Position foremost(const int4 size, int x, int y, __global const float *depth) {
     const int here = at(size, x, y);
-    floatv nearest = load(depth + here);
-    nearest = where(nearest > 0.0f, nearest, (floatv)(INFINITY));
+    const floatv own = load(depth + here);
+    floatv limit = where(own > 0.0f, NEARER * own, (floatv)(INFINITY));
     Position p;
     p.column = x + LANES;
     p.row = (intv)(y);
     for (int dy = -1; dy <= 1; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) {
             const floatv z = load(depth + here + dy * size.z + dx);  // 0 outside the image
-            const intv nearer = (z > 0.0f) & (z < NEARER * nearest);
-            nearest = where(nearer, z, nearest);
+            const intv nearer = (z > 0.0f) & (z < limit);
+            limit = where(nearer, NEARER * z, limit);
             p.column = select(p.column, x + dx + LANES, nearer);
             p.row = select(p.row, (intv)(y + dy), nearer);
         }
