@@ -23,18 +23,18 @@ def test_light_of_16_orders_of_magnitude_follows_the_oracle(variant: Variant) ->
 
 
 class TestDimBesideBright:
-    """Tiles lit 1e-8 to 1e8, three times as far away as the ones to their left and facing elsewhere."""
+    """Tiles lit 1e8, 1e-8 and so on to 10 and 0.1: three times as far away as those to their left, facing elsewhere."""
 
     @pytest.fixture
     def light(self) -> np.ndarray:
         """Of every pixel, (H, W, 1)."""
-        return 10 ** np.random.default_rng(2).permutation(np.linspace(-8, 8, TILE.max() + 1))[TILE]
+        return 10 ** (np.linspace(8, 1, TILE.max() + 1)[TILE] * np.where(TILE % 2, -1, 1))
 
     @pytest.fixture
     def frames(self, variant: Variant, light: np.ndarray) -> list[Frame]:
         surface = {"normal": np.where(TILE % 2, FACING, (1.0, 0.0, 0.0)), "depth": 3.0 ** TILE[..., 0]}
         rng = np.random.default_rng(3)
-        return [variant.wall(light * rng.uniform(0.5, 1.5, (*SHAPE, 1)), **surface) for _ in range(5)]
+        return [variant.wall(light * rng.uniform(0.9, 1.1, (*SHAPE, 1)), **surface) for _ in range(5)]
 
     def test_follows_the_oracle(self, variant: Variant, frames: list[Frame]) -> None:
         variant.assert_follows_oracle(frames)
@@ -42,7 +42,7 @@ class TestDimBesideBright:
     def test_each_tile_keeps_its_own_light(self, variant: Variant, frames: list[Frame], light: np.ndarray) -> None:
         *_, last = variant.linear.pictures(frames)
         held = (light > 100 * variant.least) & (light < variant.greatest) & np.ones(3, bool)
-        assert_allclose(last[held], np.broadcast_to(light, last.shape)[held], rtol=0.5)
+        assert_allclose(last[held], np.broadcast_to(light, last.shape)[held], rtol=0.1)
 
 
 @pytest.mark.parametrize("scale", [2.0**-8, 2.0**8])
