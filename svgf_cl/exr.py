@@ -1,4 +1,4 @@
-"""OpenEXR files as named planes: written whole or not at all; read, as Radiance HDR is, with no trust in their claims."""
+"""OpenEXR files as named planes: written whole or not at all; read, as Radiance HDR is, not trusting their claims."""
 
 from __future__ import annotations
 
