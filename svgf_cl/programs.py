@@ -27,6 +27,10 @@ HEADERS = ("common.clh", "storage.clh", "interleaved.clh", "surface.clh")
 # denormal numbers, and slow: without them an a-trous level takes a seventh less time on traced frames.
 OPTIONS = ("-cl-std=CL1.2", "-cl-mad-enable", "-cl-denorms-are-zero", "-w")
 
+# Where pyopencl's own cache of binaries is damaged it looks this up, to warn and build from source if it is empty; it
+# does not occur to it that it may not be set.
+os.environ.setdefault("PYOPENCL_CACHE_FAILURE_FATAL", "")
+
 Define = int | float | str
 
 _lock = threading.Lock()

@@ -34,12 +34,12 @@ class Sealed(IndexDataCacheFile):
     def load(self, key: object) -> object:
         """What was kept under `key`; None where there is nothing, or something is damaged."""
         if Path(self._index_path).exists() and not self._is_whole():
-            self.flush()
-        return super().load(key)
+            self.flush()  # type: ignore[no-untyped-call]
+        return super().load(key)  # type: ignore[no-untyped-call]
 
     def save(self, key: object, data: object) -> None:
         """Keep `data` under `key`."""
-        super().save(key, data)
+        super().save(key, data)  # type: ignore[no-untyped-call]
         with written_whole(self._seal) as aside:
             aside.write_bytes(self._checksum())
 
@@ -86,7 +86,8 @@ def compiled(function: Function) -> Function:
     finally:
         vars(numba.config)["CACHE_DIR"] = others
     kept = result._cache
-    kept._cache_file = Sealed(kept._cache_path, kept._impl.filename_base, kept._impl.locator.get_source_stamp())
+    place = (kept._cache_path, kept._impl.filename_base, kept._impl.locator.get_source_stamp())
+    kept._cache_file = Sealed(*place)  # type: ignore[no-untyped-call]
     return cast(Function, result)
 
 

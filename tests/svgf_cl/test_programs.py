@@ -126,3 +126,17 @@ def test_a_build_error_shows_device_options_and_the_line_in_the_file(queue, stag
 def test_an_unknown_stage(queue):
     with pytest.raises(FileNotFoundError, match="nothing"):
         programs.build(queue.context, queue.device, "nothing", {})
+
+
+@pytest.mark.parametrize("kind", ["binary", "info"])
+def test_a_damaged_cache_of_pyopencl_is_no_reason_not_to_build(kind, stage, queue, tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr("pyopencl.characterize.has_src_build_cache", lambda device: False)  # PoCL's driver has its own
+    name = stage(SQUARE)
+    programs.build(cl.Context([queue.device]), queue.device, name, {"SCALE": 2.0})
+    (file,) = tmp_path.rglob(kind)
+    file.write_bytes(b"junk")
+    context = cl.Context([queue.device])
+    with pytest.warns(UserWarning, match="caching failed"):
+        program = programs.build(context, queue.device, name, {"SCALE": 2.0})
+    assert program.kernel_names == "square"
