@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import warnings
 import zipfile
+import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +19,20 @@ from svgf_cl.files import make_folder, written_whole
 
 from .estimate import Estimate, Step
 from .vectors import Float32
+
+# What reading a damaged file raises: a RuntimeError where it claims to be encrypted or of another version of zip, a
+# MemoryError where it claims to be larger than it is.
+DAMAGE = (
+    EOFError,
+    IndexError,
+    KeyError,
+    MemoryError,
+    OSError,
+    RuntimeError,
+    ValueError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
 
 
 @dataclass(frozen=True)
@@ -67,7 +82,7 @@ def _read(path: Path, start: Estimate) -> Estimate | None:
         return Estimate(history[-1].spp, light, squares, history)
     except FileNotFoundError:
         return None
-    except (EOFError, IndexError, KeyError, OSError, ValueError, zipfile.BadZipFile) as error:
+    except DAMAGE as error:
         warnings.warn(f"{path}: damaged ({error}); deleted, its samples are rendered again", stacklevel=4)
         path.unlink(missing_ok=True)
         return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -67,6 +68,50 @@ def test_a_damaged_file_is_deleted_with_a_warning(damage: Callable[[bytes], byte
     path.write_bytes(damage(path.read_bytes()))
     with pytest.warns(UserWarning, match=r"0003\.000032\.npz: damaged"):
         assert_same(checkpoints.latest(NOTHING, lambda _: True), estimate(16))
+    assert not path.exists()
+
+
+def test_no_bit_can_be_wrong_unnoticed(tmp_path: Path) -> None:
+    checkpoints, rng = Checkpoints(tmp_path, 3), np.random.default_rng(0)
+    checkpoints.replace(NOTHING, estimate(32))
+    (path,) = tmp_path.iterdir()
+    content = path.read_bytes()
+    noticed = 0
+    for _ in range(1500):
+        damaged = np.frombuffer(content, np.uint8).copy()
+        # Most of them where sizes, methods and names are.
+        ends = np.concatenate([np.arange(200), np.arange(len(content) - 330, len(content))])
+        places = rng.choice(ends if rng.random() < 0.7 else len(content), rng.integers(1, 4))
+        damaged[places] ^= (1 << rng.integers(0, 8, len(places))).astype(np.uint8)
+        path.write_bytes(damaged.tobytes())
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = checkpoints.latest(NOTHING, lambda _: True)
+        if found is NOTHING:
+            noticed += 1
+        else:
+            assert_same(found, estimate(32))
+    assert noticed > 1000
+
+
+@pytest.mark.parametrize(
+    "light",
+    [
+        np.array([{}, object()], object),
+        b"\x93NUMPY\x01\x00\x76\x00"
+        + b"%-117s\n" % b"{'descr': '<f4', 'fortran_order': False, 'shape': (9999999999999,), }",
+    ],
+    ids=["objects", "huge"],
+)
+def test_nothing_is_unpickled_and_no_room_made_for_a_claim(light: np.ndarray | bytes, tmp_path: Path) -> None:
+    path = tmp_path / "0003.000032.npz"
+    with zipfile.ZipFile(path, "w") as archive, archive.open("light.npy", "w") as file:
+        if isinstance(light, bytes):
+            file.write(light)
+        else:
+            np.lib.format.write_array(file, light)
+    with pytest.warns(UserWarning, match=r"0003\.000032\.npz: damaged \((Object arrays cannot|Unable to allocate)"):
+        assert Checkpoints(tmp_path, 3).latest(NOTHING, lambda _: True) is NOTHING
     assert not path.exists()
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 import shutil
 import signal
 import subprocess
@@ -77,8 +79,8 @@ def denoised(rendered: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     ("argv", "killed"),
     [
         (("denoise", "RENDERED", "--png"), (1, 2)),
-        (("render", "cornell", *FRAMES, "--reference-spp", "16"), (2, 3)),
-        (("demo", *FRAMES, "--reference-spp", "4"), (5, 8)),
+        (("render", "cornell", *FRAMES, "--reference-spp", "16"), (5,)),
+        (("demo", *FRAMES, "--reference-spp", "4"), (13,)),
     ],
     ids=lambda value: value[0] if isinstance(value[0], str) else "",
 )
@@ -183,3 +185,50 @@ def test_a_link_to_itself_is_replaced_and_one_to_the_input_is_not(rendered: Path
     (tmp_path / "linked").symlink_to(rendered)
     assert run("denoise", rendered, "-o", tmp_path / "linked") == 2
     assert "expected an output folder other than the input's" in capsys.readouterr().err
+
+
+def test_a_disk_that_fills_up_leaves_what_is_done(
+    rendered: Path, denoised: Path, tmp_path: Path, capsys, monkeypatch
+) -> None:
+    """As the third picture is written; then there is room again."""
+    out, sync, left = tmp_path / "out", os.fsync, [5]
+
+    def full(descriptor: int) -> None:
+        left[0] -= 1
+        if not left[0]:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        sync(descriptor)
+
+    monkeypatch.setattr(os, "fsync", full)
+    assert run("denoise", rendered, "--png", "-o", out) == 2
+    said = capsys.readouterr().err
+    assert said == f"svgf-cl: {out / 'frame.0002.exr'}: cannot be written (No space left on device)\n"
+    done = {name: content for name, content in contents(denoised).items() if "0000" in name or "0001" in name}
+    assert contents(out) == done
+    assert run("denoise", rendered, "--png", "-o", out) == 0
+    assert "2 of them kept" in capsys.readouterr().out
+    assert contents(out) == contents(denoised)
+
+
+@pytest.mark.parametrize("name", ["a b", "ü 日本", "new\nline", "-dash", "q?x=1", "frame.0000.exr"])
+def test_folders_of_any_name(name: str, rendered: Path, denoised: Path, tmp_path: Path) -> None:
+    frames = Path(shutil.copytree(rendered, tmp_path / name / "in"))
+    assert run("denoise", frames, "--png", "-o", tmp_path / name / "out") == 0
+    assert contents(tmp_path / name / "out") == contents(denoised)
+
+
+def test_a_name_can_do_nothing_to_the_terminal(tmp_path: Path, capsys) -> None:
+    for name, shown in (("\x1b[31mred", r"\x1b[31mred"), (os.fsdecode(b"\xff"), r"\udcff")):
+        (tmp_path / name).mkdir()
+        assert run("denoise", tmp_path / name, "-o", tmp_path / "out") == 2
+        assert capsys.readouterr().err.startswith(f"svgf-cl: {tmp_path}/{shown}: expected files named")
+
+
+def test_a_name_that_is_too_long_is_refused_in_one_line(rendered: Path, tmp_path: Path, capsys) -> None:
+    name = "x" * 300
+    for argv in (("denoise", name), ("denoise", rendered), ("compare", name, rendered), ("render", name)):
+        output = () if argv[0] == "compare" else ("-o", tmp_path / (name if rendered in argv else "out"))
+        assert run(*argv, *output) == 2
+        said = capsys.readouterr().err
+        assert "File name too long" in said
+        assert said.count("\n") == 1
