@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pyopencl as cl
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from svgf_cl import Denoiser, Settings, SettingsError, SvgfError, Tuning
@@ -36,6 +36,8 @@ anything = st.one_of(
 
 
 @effort()
+@example(name="taps", value=np.array(["3x3", "3x3"]))
+@example(name="iterations", value=10**5000)
 @given(name=st.sampled_from([field.name for field in fields(Settings)]), value=anything)
 def test_settings(name: str, value: Any) -> None:
     try:
@@ -51,20 +53,36 @@ def test_settings(name: str, value: Any) -> None:
 
 
 @effort()
+@example(name="vector_width", value=4.0)
+@example(name="row_alignment", value=64.0)
 @given(name=st.sampled_from([field.name for field in fields(Tuning)]), value=anything)
 def test_tuning(name: str, value: Any) -> None:
     right = {"vector_width": 4, "work_group": (16, 1)}
     try:
-        Tuning(**{**right, name: value})
+        made = Tuning(**{**right, name: value})
     except SvgfError as error:
-        assert str(error).startswith(f"Tuning.{name}: expected ")  # noqa: PT017
-        assert len(str(error)) < 200  # noqa: PT017
+        refusal = str(error)
+    else:
+        assert all(isinstance(number, int) for number in (made.vector_width, *made.work_group, made.row_alignment))
+        return
+    assert refusal.startswith(f"Tuning.{name}: expected ")
+    assert len(refusal) < 200
 
 
 @effort()
 @given(name=st.sampled_from(("shape", "settings", "queue", "tuning")), value=anything)
 def test_denoiser(queue: cl.CommandQueue, name: str, value: Any) -> None:
     right = {"shape": (2, 3), "queue": queue}
-    if name == "shape" or value is not None:
-        with pytest.raises(SvgfError, match=r"^Denoiser: expected .*, got "):
-            Denoiser(**{**right, name: value})
+    if is_right(name, value):
+        assert min(Denoiser(**{**right, name: value}).shape) >= 1
+        return
+    with pytest.raises(SvgfError, match=r"^Denoiser: expected .*, got "):
+        Denoiser(**{**right, name: value})
+
+
+def is_right(name: str, value: Any) -> bool:
+    """Two whole numbers are a shape; all else may be left out."""
+    if name != "shape":
+        return value is None
+    is_pair = isinstance(value, (tuple, list, bytes)) and len(value) == 2
+    return is_pair and all(1 <= side <= 10_000 for side in value)
