@@ -14,6 +14,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from svgf_cl import Denoiser, Settings, SettingsError, SvgfError, Tuning
+from svgf_cl.planes import Layout
 from tests.fuzz.effort import effort
 
 anything = st.one_of(
@@ -85,4 +86,4 @@ def is_right(name: str, value: Any) -> bool:
     if name != "shape":
         return value is None
     is_pair = isinstance(value, (tuple, list, bytes)) and len(value) == 2
-    return is_pair and all(1 <= side <= 10_000 for side in value)
+    return is_pair and min(value) >= 1 and Layout(*value).indexable

@@ -6,6 +6,7 @@ import functools
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier
+from time import sleep
 
 import numpy as np
 import pyopencl as cl
@@ -71,5 +72,9 @@ def test_one_denoiser_may_be_asked_and_reset_by_threads(queue: cl.CommandQueue) 
 
 
 def test_the_first_queues_of_threads_share_a_context(queue: cl.CommandQueue, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(devices, "_context", functools.cache(devices._context.__wrapped__))
+    def slow(device: cl.Device) -> cl.Context:
+        sleep(0.1)  # for all threads to ask before the first is answered
+        return cl.Context([device])
+
+    monkeypatch.setattr(devices, "_context", functools.cache(slow))
     assert len({made.context for made in in_threads(lambda: devices.create_queue(queue.device))}) == 1
