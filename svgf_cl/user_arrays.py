@@ -123,9 +123,19 @@ def wrap(queue: cl.CommandQueue, value: np.ndarray) -> cl.Buffer:
 
 def check_apart(buffers: Mapping[str, cl.Buffer]) -> None:
     """Raise `FrameError` where the result would overwrite a field that neighbouring pixels still read."""
+    if OUT not in buffers:
+        return
+    result, begin, end = place(buffers[OUT])
     for name, buffer in buffers.items():
-        if OUT in buffers and name != OUT and buffer.int_ptr == buffers[OUT].int_ptr:
+        memory, first, last = place(buffer)
+        if name != OUT and memory == result and first < end and begin < last:
             raise FrameError(OUT, "memory of its own", f"that of {name}")
+
+
+def place(buffer: cl.Buffer) -> tuple[int, int, int]:
+    """Where a buffer lies: in which memory, as it may be part of another; its first byte and that behind its last."""
+    whole = cast("cl.Buffer | None", buffer.get_info(cl.mem_info.ASSOCIATED_MEMOBJECT)) or buffer
+    return whole.int_ptr, buffer.offset, buffer.offset + buffer.size
 
 
 def check_out(out: Any, shape: tuple[int, int, int]) -> None:

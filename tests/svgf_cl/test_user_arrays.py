@@ -288,6 +288,23 @@ def test_result_must_not_overwrite_a_field(name: str, den: Denoiser) -> None:
         den.denoise(frame, out=getattr(frame, name))
 
 
+@pytest.mark.parametrize(("offset", "apart"), [(0, False), (1, False), (2, True)])
+def test_result_must_not_overlap_a_field_in_one_buffer(offset: int, apart: bool, den: Denoiser) -> None:
+    half = 1 << 14  # bytes; two hold an image, and on any device a part of a buffer may begin there
+    buffer = cl.Buffer(den.queue.context, cl.mem_flags.READ_WRITE, 4 * half)
+    color, out = (
+        cl_array.Array(den.queue, OUT, np.float32, data=buffer.get_sub_region(begin * half, 2 * half))
+        for begin in (0, offset)
+    )
+    color.set(FRAME.color)
+    frame = replace(on_device(FRAME, den.queue), color=color)
+    if apart:
+        assert np.isfinite(den.denoise(frame, out=out).get()).all()
+        return
+    with pytest.raises(FrameError, match=r"out: expected memory of its own, got that of color"):
+        den.denoise(frame, out=out)
+
+
 def test_a_field_still_being_computed_on_another_queue_is_waited_for(expected: np.ndarray, den: Denoiser) -> None:
     renderer = cl.CommandQueue(den.queue.context)
     frame = on_device(replace(FRAME, color=np.zeros_like(FRAME.color)), den.queue)
