@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 
 import numba
@@ -23,39 +22,6 @@ def test_what_is_compiled_is_kept_on_disk_for_the_next_process(tmp_path: Path, m
     assert list(tmp_path.rglob("*.nbc"))
     assert not first.stats.cache_hits
     assert second.stats.cache_hits
-
-
-def damaged(content: bytes) -> bytes:
-    """Another byte in the middle."""
-    middle = len(content) // 2
-    return content[:middle] + bytes([content[middle] ^ 255]) + content[middle + 1 :]
-
-
-@pytest.mark.parametrize("kind", ["nbi", "nbc", "sha256"])
-@pytest.mark.parametrize(
-    "damage", [damaged, lambda content: content[: len(content) // 2], lambda _: b"", lambda _: b"junk" * 9]
-)
-def test_what_is_damaged_is_compiled_again(
-    kind: str, damage: Callable[[bytes], bytes], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(tracer.compiled, "FOLDER", tmp_path)
-    assert compiled(double)(3.0) == 6.0
-    (file,) = tmp_path.rglob(f"*.{kind}")
-    file.write_bytes(damage(file.read_bytes()))
-    again, whole = compiled(double), compiled(double)
-    assert again(3.0) == 6.0
-    assert not again.stats.cache_hits
-    assert whole(3.0) == 6.0
-    assert whole.stats.cache_hits
-
-
-def test_a_file_that_is_gone_is_made_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tracer.compiled, "FOLDER", tmp_path)
-    assert compiled(double)(3.0) == 6.0
-    for kind in ("nbi", "nbc", "sha256"):
-        next(tmp_path.rglob(f"*.{kind}")).unlink()
-        assert compiled(double)(3.0) == 6.0
-        assert next(tmp_path.rglob(f"*.{kind}")).stat().st_size
 
 
 def test_the_folder_is_named_by_the_state_of_the_sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
