@@ -14,7 +14,7 @@ from svgf_cl.waiting import pending
 
 
 def test_events_of_other_queues_are_waited_for(queue: cl.CommandQueue) -> None:
-    given, own, other = (cl.UserEvent(queue.context) for _ in range(3))
+    given, other = (cl.UserEvent(queue.context) for _ in range(2))
     own = cl.enqueue_marker(queue)
     array = cl_array.empty(queue, (1,), np.float32)
     array.events[:] = [own, other]
