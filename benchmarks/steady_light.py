@@ -31,7 +31,7 @@ def steady_frames(noise: float, count: int = FRAMES, seed: int = 0) -> Iterator[
         light = LUMINANCE * (1 + noise * rng.standard_normal((*SHAPE, 1)))
         yield Frame(
             color=np.repeat(light, 3, axis=-1).astype(np.float32),
-            normal=np.broadcast_to(np.float32((0, 0, 1)), (*SHAPE, 3)),
+            normal=np.broadcast_to(np.array((0, 0, 1), np.float32), (*SHAPE, 3)),
             depth=np.full(SHAPE, 4, np.float32),
             motion=np.zeros((*SHAPE, 2), np.float32),
         )
@@ -39,20 +39,23 @@ def steady_frames(noise: float, count: int = FRAMES, seed: int = 0) -> Iterator[
 
 def raw_moments(frames: Iterable[Frame], alpha: float) -> NDArray[np.float32]:
     """Variance as in Schied et al. 2017, section 4.2, in float32: mu2 - mu1^2, (H, W), at least 0."""
-    first = second = np.zeros(SHAPE, np.float32)
+    first: NDArray[np.float32] = np.zeros(SHAPE, np.float32)
+    second = first
     for age, frame in enumerate(frames):
         luminance = frame.color @ REC709.astype(np.float32)
         share = np.float32(max(alpha, 1 / (age + 1)))
         first = first + share * (luminance - first)
         second = second + share * (luminance * luminance - second)
-    return np.maximum(second - first * first, 0)
+    variance: NDArray[np.float32] = np.maximum(second - first * first, 0)
+    return variance
 
 
 def kept_variance(denoiser: Denoiser, frames: Iterable[Frame]) -> NDArray[np.float32]:
     """Variance as the device keeps it, (H, W)."""
     for frame in frames:
         denoiser.denoise(frame)
-    return denoiser.stage("moment_variance")[0]
+    variance: NDArray[np.float32] = denoiser.stage("moment_variance")[0]
+    return variance
 
 
 def exact_variance(frames: Iterable[Frame]) -> NDArray[np.float64]:
@@ -60,7 +63,8 @@ def exact_variance(frames: Iterable[Frame]) -> NDArray[np.float64]:
     oracle = Reference(SHAPE)
     for frame in frames:
         oracle.denoise(frame)
-    return oracle.stages["moment_variance"][0]
+    variance: NDArray[np.float64] = oracle.stages["moment_variance"][0]
+    return variance
 
 
 def errors(noise: float, queue: cl.CommandQueue | None = None) -> tuple[float, float, float]:
