@@ -10,6 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import psutil
+import pyopencl as cl
+import pyopencl.array as cl_array
 import pytest
 from numpy.testing import assert_allclose
 
@@ -161,6 +163,17 @@ def assert_no_denormals(den: Denoiser) -> None:
         assert not ((values > 0) & (values < LEAST_NORMAL)).any(), name
 
 
+@pytest.fixture(scope="module")
+def flushing(queue: cl.CommandQueue) -> None:
+    """A device to which -cl-denorms-are-zero is more than the hint that it is: to rusticl of Mesa 22 it is not."""
+    source = "__kernel void halve(__global float *x) { x[0] *= 0.5f; }"
+    program = cl.Program(queue.context, source).build("-cl-denorms-are-zero")
+    x = cl_array.to_device(queue, np.array([LEAST_NORMAL]))
+    program.halve(queue, (1,), None, x.data)
+    if x.get()[0] != 0:
+        pytest.skip(f"{queue.device.name} ignores -cl-denorms-are-zero")
+
+
 def resident() -> int:
     """Bytes of memory that this process holds, the OpenCL devices' on a CPU among them."""
     gc.collect()
@@ -185,6 +198,7 @@ in_32_bits = pytest.mark.parametrize("variant", IN_32_BITS, indirect=True)
 
 
 @in_32_bits
+@pytest.mark.usefixtures("flushing")
 def test_random_motion_leaves_no_denormals(variant: Variant) -> None:
     den = variant.denoiser(SHAPE, keep_stages=True)
     for frame in random_frames(variant, 200):
@@ -193,6 +207,7 @@ def test_random_motion_leaves_no_denormals(variant: Variant) -> None:
 
 
 @in_32_bits
+@pytest.mark.usefixtures("flushing")
 def test_light_that_goes_out_leaves_no_denormals(variant: Variant) -> None:
     """What falls to 0.8 of itself in every frame would be a denormal number after some 390 frames, for 70 more."""
     den = variant.denoiser(SHAPE, keep_stages=True)
