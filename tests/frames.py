@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import functools
+import os
 from typing import Any
 
 import numpy as np
 
+from svgf_cl import devices
 from svgf_cl.frame import CHANNELS, Frame, Shape
 from tracer import Shot, builtin_scene, render_sequence
 
-SHAPE = (53, 37)  # primes: no multiple of any vector width
+# Primes: no multiple of any vector width. Fewer on a simulator, which takes a millisecond for every pixel.
+SHAPE = (13, 29) if os.environ.get(devices.VARIABLE) == devices.SIMULATOR else (53, 37)
 TINY = (7, 9)
 FACING = (0.0, 0.0, 1.0)
 
@@ -75,7 +78,7 @@ def bumpy_sequence(
 
 
 @functools.cache
-def traced_sequence(fields: tuple[str, ...], count: int = 5, shape: Shape = (54, 96)) -> tuple[Frame, ...]:
+def traced_sequence(fields: tuple[str, ...], count: int = 5, shape: Shape = (SHAPE[0] + 1, 2 * SHAPE[1])) -> tuple[Frame, ...]:
     """Path-traced frames of the built-in scene under its moving camera."""
     shot = Shot(builtin_scene(), shape, count)
     return tuple(only(frame, fields) for frame in render_sequence(shot))

@@ -84,8 +84,8 @@ def test_bright_light_survives_tone_mapping() -> None:
 @pytest.mark.parametrize("brightness", [1e4, 1e30, 3e38])
 def test_firefly_goes_no_further_than_its_pixel(brightness: float) -> None:
     picture = np.full((*SHAPE, 3), 0.5)
-    picture[20, 20] = (brightness, 0, brightness)
+    picture[5, 20] = (brightness, 0, brightness)
     out, _ = feed(*[glowing(picture)] * 3, taa=True)
     assert np.isfinite(out).all()
-    picture[20, 20] = out[20, 20] = 0
+    picture[5, 20] = out[5, 20] = 0
     assert_allclose(out, picture, rtol=1e-5)

@@ -1,0 +1,49 @@
+"""The OpenCL implementations that svgf_cl is tested on, and how to give a process one of them alone."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from svgf_cl import devices, intel_runtime
+
+# By the name in tables: the platform's own name, what the OpenCL loader is to load, what else the driver asks for.
+# Oclgrind's package registers it nowhere; `scripts/set_up implementations` installs them all.
+CPU_IMPLEMENTATIONS = {
+    "PoCL": (devices.POCL, "libpocl.so.2", {}),
+    "Intel": (intel_runtime.PLATFORM, str(intel_runtime.find()), {}),
+    "rusticl": ("rusticl", "libRusticlOpenCL.so.1", {"RUSTICL_ENABLE": "llvmpipe"}),
+    "Oclgrind": (devices.SIMULATOR, "/usr/lib/oclgrind/liboclgrind-rt-icd.so", {}),
+}
+
+Environment = dict[str, str]
+
+
+def environments(folder: Path) -> dict[str, Environment]:
+    """The environment of a process in which one implementation is the default, by the name of the implementation.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Where to write what the OpenCL loader reads; it must last as long as those processes.
+
+    Returns
+    -------
+    dict of str to dict
+        `CPU_IMPLEMENTATIONS`, whether they are installed or not, and every GPU that works.
+    """
+    gpus = {
+        f"{report.device} ({report.platform})": {**os.environ, devices.VARIABLE: report.selector}
+        for report in devices.list_devices()
+        if report.works and report.kind == "GPU"
+    }
+    return {name: _alone(name, folder) for name in CPU_IMPLEMENTATIONS} | gpus
+
+
+def _alone(name: str, folder: Path) -> Environment:
+    platform, library, needs = CPU_IMPLEMENTATIONS[name]
+    vendors = folder / name
+    vendors.mkdir()
+    (vendors / "only.icd").write_text(f"{library}\n")
+    # With the slash: without it some loaders take the value for a library.
+    return {**os.environ, **needs, intel_runtime.VARIABLE: f"{vendors}/", devices.VARIABLE: platform}
