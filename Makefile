@@ -5,16 +5,19 @@ BIN := .venv/bin
 READY := .venv/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint bench docs clean device
+.PHONY: help demo test test-all lint bench docs clean device implementations
 
 help:  ## list the targets
-	@sed -n 's/^\([a-z]*\):.*## /\1	/p' $(MAKEFILE_LIST) | expand -t 8
+	@sed -n 's/^\([a-z-]*\):.*## /\1	/p' $(MAKEFILE_LIST) | expand -t 10
 
 demo: device  ## render a built-in scene with noise and denoise it
 	$(BIN)/svgf-cl demo
 
 test: device  ## run the tests
 	$(BIN)/python -m pytest -n auto --maxprocesses 8
+
+test-all: implementations  ## run the tests on PoCL, Intel's runtime, rusticl, Oclgrind and every GPU; show each kernel's error
+	$(BIN)/python -m scripts.test_all
 
 lint: $(READY)  ## check style, types and kernels (needs clang)
 	$(BIN)/ruff check .
@@ -27,8 +30,8 @@ bench: device  ## time every kernel on every device, beside rival and error; rep
 	-$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[dev,cpu,oidn]'
 	$(BIN)/python -m benchmarks --output out/bench
 
-docs: demo  ## make docs/accuracy.md, docs/scene_description.md and the pictures of README and of the built-in scenes again
-	$(BIN)/python -m benchmarks.accuracy
+docs: demo implementations  ## make docs/accuracy.md, docs/scene_description.md and the pictures of README and of the built-in scenes again
+	$(BIN)/python -m benchmarks.accuracy docs/accuracy.md
 	$(BIN)/python scripts/picture.py
 	$(BIN)/python scripts/scene_description.py
 	$(BIN)/svgf-cl scenes -o docs/builtin_scenes.webp --size 320x180 --spp 128
@@ -38,6 +41,9 @@ clean:  ## remove what the other targets made
 
 device: $(READY)
 	@scripts/set_up device
+
+implementations: $(READY)
+	@scripts/set_up implementations
 
 $(READY): pyproject.toml setup.py scripts/set_up
 	@PYTHON=$(PYTHON) scripts/set_up environment

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,25 +27,37 @@ DECISION = 1e-3
 
 @dataclass(frozen=True)
 class Deviation:
-    """Errors of one stage over all pixels of all frames, relative as described at `SCALE_SHARE`.
+    """How far one stage is off the oracle, over all pixels of all frames.
 
     Parameters
     ----------
-    stage : str
-        Name as in `Denoiser.stages`; "out" for the result.
-    largest, typical : float
-        Greatest and median error over the pixels decided alike.
+    kernel : str
+        Whose work the stage is.
+    absolute : float
+        Largest error of the pixels decided alike, in the stage's own unit.
+    relative : float
+        The largest as described at `SCALE_SHARE`.
+    ulps : float
+        The largest in units in the last place of what the relative error counts against, as float32.
     decided_otherwise : float
-        Share of pixels beyond `DECISION`.
-    pixels : int
-        How many values were compared.
+        Share of pixels whose relative error is beyond `DECISION`.
     """
 
-    stage: str
-    largest: float
-    typical: float
+    kernel: str
+    absolute: float
+    relative: float
+    ulps: float
     decided_otherwise: float
-    pixels: int
+
+    @classmethod
+    def of(cls, kernel: str, error: Array, size: Array) -> Deviation:
+        """Condense |got - expected| of all pixels; `size` is what the relative error counts against, of like shape."""
+        alike = error / size <= DECISION
+        absolute, relative, ulps = (
+            float((error / unit).max(where=alike, initial=0.0))
+            for unit in (1.0, size, np.spacing(size.astype(np.float32)))
+        )
+        return cls(kernel, absolute, relative, ulps, decided_otherwise=float(np.mean(~alike)))
 
 
 def deviations(
@@ -63,10 +75,10 @@ def deviations(
     Returns
     -------
     dict of str to Deviation
-        By stage, in the order of the pipeline.
+        By stage, in the order of the pipeline; "out" is the result.
     """
     settings = settings or Settings()
-    errors: dict[str, list[Array]] = {}
+    found: dict[str, list[Deviation]] = {}
     den: Denoiser | None = None
     past: dict[str, Single] = {}
     guides: reference.Guides | None = None
@@ -76,11 +88,25 @@ def deviations(
         now = {name: den.stage(name) for name in den.stages} | {"out": out}
         previous = None if guides is None else History(guides, past)
         guides = seen_guides(frame, now)
-        for stage, expected in oracle_stages(frame, guides, now, previous, settings):
-            size = largest_channel(expected) if expected.shape[-3:] == (*frame.shape, 3) else np.abs(expected)
-            errors.setdefault(stage, []).append(relative_error(now[stage], expected, size).ravel())
+        for kernel, stages in oracle_stages(frame, guides, now, previous, settings):
+            for stage, expected in stages.items():
+                colour = expected.shape[-3:] == (*frame.shape, 3)
+                size = counted_against(largest_channel(expected) if colour else np.abs(expected))
+                error = np.abs(now[stage] - expected)
+                found.setdefault(stage, []).append(Deviation.of(kernel, error, np.broadcast_to(size, error.shape)))
         past = now
-    return {stage: summary(stage, np.concatenate(parts)) for stage, parts in errors.items()}
+    return {stage: worst(frame_by_frame) for stage, frame_by_frame in found.items()}
+
+
+def worst(found: Sequence[Deviation]) -> Deviation:
+    """The largest errors of a kernel's stages or frames, and the mean share of pixels that were decided otherwise."""
+    return Deviation(
+        found[0].kernel,
+        absolute=max(deviation.absolute for deviation in found),
+        relative=max(deviation.relative for deviation in found),
+        ulps=max(deviation.ulps for deviation in found),
+        decided_otherwise=float(np.mean([deviation.decided_otherwise for deviation in found])),
+    )
 
 
 @dataclass(frozen=True)
@@ -104,37 +130,39 @@ def seen_guides(frame: Frame, now: dict[str, Single]) -> reference.Guides:
 
 def oracle_stages(
     frame: Frame, guides: reference.Guides, now: dict[str, Single], previous: History | None, settings: Settings
-) -> Iterator[tuple[str, Array]]:
-    """What the oracle makes of each kernel's actual input, stage by stage."""
+) -> Iterator[tuple[str, dict[str, Array]]]:
+    """What the oracle makes of each kernel's actual input: kernel by kernel, stage by stage."""
     illumination, exact = reference.demodulate(frame, settings)
-    yield "normal", exact.normal
-    yield "depth", exact.depth
-    yield "demodulated", illumination
+    yield "demodulate", {"normal": exact.normal, "depth": exact.depth, "demodulated": illumination}
 
     history = previous.accumulated() if previous else None
     temporal = reference.temporal(wide(now["demodulated"]), guides, history, settings)
-    yield "accumulated", temporal.illumination
-    yield "history_length", temporal.length
-    yield "mean", temporal.mean
-    yield "moment_variance", temporal.variance
-    yield "variance", reference.variance(accumulated(now, now["accumulated"]), guides, settings)
+    yield (
+        "temporal",
+        {
+            "accumulated": temporal.illumination,
+            "history_length": temporal.length,
+            "mean": temporal.mean,
+            "moment_variance": temporal.variance,
+        },
+    )
+    yield "variance", {"variance": reference.variance(accumulated(now, now["accumulated"]), guides, settings)}
 
     source = "accumulated", "variance"
     for level in range(settings.iterations):
         target = f"level_{level + 1}", f"level_{level + 1}_variance"
         filtered = reference.atrous(wide(now[source[0]]), wide(now[source[1]]), guides, level, settings)
-        yield from zip(target, filtered, strict=True)
+        yield "atrous", dict(zip(target, filtered, strict=True))
         source = target
 
     image = reference.modulate(wide(now[source[0]]), guides)
     if not settings.taa:
-        yield "out", image
+        yield "modulate", {"out": image}
         return
-    yield "modulated", image
+    yield "modulate", {"modulated": image}
     antialiased = wide(previous.stages["antialiased"]) if previous else None
     resolved, tone = reference.taa(wide(now["modulated"]), guides, wide(now["history_length"]), antialiased, settings)
-    yield "antialiased", tone
-    yield "out", resolved
+    yield "taa", {"antialiased": tone, "out": resolved}
 
 
 def accumulated(stages: dict[str, Single], illumination: Single) -> reference.Accumulated:
@@ -155,21 +183,13 @@ def largest_channel(colors: Array) -> Array:
     return largest
 
 
+def counted_against(size: Array) -> Array:
+    """What an error is relative to: the size of a value, and `SCALE_SHARE` of the mean size; never 0."""
+    counted: Array = size + (SCALE_SHARE * size.mean() or 1.0)
+    return counted
+
+
 def relative_error(got: Single, expected: Array, size: Array | None = None) -> Array:
-    """|got - expected| / (size + `SCALE_SHARE` of its mean), of the same shape; the size is |expected| if not given."""
-    size = np.abs(expected) if size is None else size
-    scale = SCALE_SHARE * size.mean() or 1.0
-    error: Array = np.abs(got - expected) / (size + scale)
+    """|got - expected| over what it counts against, of the same shape; the size is |expected| if not given."""
+    error: Array = np.abs(got - expected) / counted_against(np.abs(expected) if size is None else size)
     return error
-
-
-def summary(stage: str, errors: Array) -> Deviation:
-    """Condense the errors of all pixels."""
-    alike = errors[errors <= DECISION]
-    return Deviation(
-        stage,
-        largest=float(alike.max(initial=0.0)),
-        typical=float(np.median(errors)),
-        decided_otherwise=float(np.mean(~(errors <= DECISION))),
-        pixels=errors.size,
-    )

@@ -78,7 +78,9 @@ def bumpy_sequence(
 
 
 @functools.cache
-def traced_sequence(fields: tuple[str, ...], count: int = 5, shape: Shape = (SHAPE[0] + 1, 2 * SHAPE[1])) -> tuple[Frame, ...]:
+def traced_sequence(
+    fields: tuple[str, ...], count: int = 5, shape: Shape = (SHAPE[0] + 1, 2 * SHAPE[1])
+) -> tuple[Frame, ...]:
     """Path-traced frames of the built-in scene under its moving camera."""
     shot = Shot(builtin_scene(), shape, count)
     return tuple(only(frame, fields) for frame in render_sequence(shot))

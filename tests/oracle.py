@@ -95,5 +95,5 @@ def assert_follows_oracle(case: str, *stages: str) -> None:
     for name, deviation in measured(case).items():
         kind = "level" + name[len("level_1") :] if name.startswith("level_") else name
         if kind in stages:
-            assert deviation.largest <= TOLERANCES[kind], deviation
+            assert deviation.relative <= TOLERANCES[kind], deviation
             assert deviation.decided_otherwise <= DECIDED_OTHERWISE, deviation

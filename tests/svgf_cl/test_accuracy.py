@@ -7,7 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from svgf_cl import Denoiser, Settings, reference
-from svgf_cl.accuracy import DECISION, SCALE_SHARE, deviations, relative_error, summary
+from svgf_cl.accuracy import DECISION, SCALE_SHARE, Deviation, deviations, relative_error, worst
+from svgf_cl.passes import Inputs, pipeline
 from tests.frames import SPLIT, TINY, bumpy_sequence
 
 
@@ -16,7 +17,11 @@ def test_covers_every_stage_and_the_result(taa: bool) -> None:
     frames = bumpy_sequence(SPLIT, count=2, shape=TINY)
     den = Denoiser(TINY, settings=Settings(taa=taa))
     den.denoise(frames[0])
-    assert set(deviations(frames, Settings(taa=taa))) == {*den.stages, "out"}
+    found = deviations(frames, Settings(taa=taa))
+    assert set(found) == {*den.stages, "out"}
+    assert {deviation.kernel for deviation in found.values()} == {
+        entry.kernel for entry in pipeline(Inputs.of(frames[0]), den.settings)
+    }
 
 
 @pytest.mark.parametrize("kernel", ["temporal", "atrous"])
@@ -44,6 +49,18 @@ def test_all_zero_is_right_or_wholly_wrong() -> None:
     assert relative_error(np.ones(3), np.zeros(3)).min() >= DECISION
 
 
-def test_summary_sets_aside_what_was_decided_otherwise() -> None:
-    found = summary("out", np.array([0.0, 1e-6, 3e-6, 1.0, np.nan]))
-    assert (found.stage, found.largest, found.decided_otherwise, found.pixels) == ("out", 3e-6, 0.4, 5)
+def test_what_was_decided_otherwise_is_set_aside() -> None:
+    found = Deviation.of(
+        "taa", error=np.array([0.0, 1e-6, 3e-6, 1.0, np.nan]), size=np.array([2.0, 0.1, 1.0, 1.0, 1.0])
+    )
+    assert found == Deviation("taa", absolute=3e-6, relative=1e-6 / 0.1, ulps=1e-6 * 2**27, decided_otherwise=0.4)
+
+
+def test_an_error_in_the_last_place_is_one_ulp() -> None:
+    size = np.array([1e-20, 1.0, 1.5, 3e38])
+    assert Deviation.of("taa", np.spacing(size.astype(np.float32)).astype(np.float64), size).ulps == 1
+
+
+def test_the_worst_of_all_frames_counts() -> None:
+    frames = [Deviation("taa", 1, 4, 5, 0.0), Deviation("taa", 2, 3, 6, 0.5)]
+    assert worst(frames) == Deviation("taa", 2, 4, 6, 0.25)

@@ -1,8 +1,14 @@
-"""The OpenCL implementations that svgf_cl is tested on, and how to give a process one of them alone."""
+"""The OpenCL implementations that svgf_cl is tested on, and how to give a process one of them alone.
+
+As a program: names those that do not work, each with the reason; exit code 1 if there are any.
+"""
 
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
+import tempfile
 from pathlib import Path
 
 from svgf_cl import devices, intel_runtime
@@ -47,3 +53,20 @@ def _alone(name: str, folder: Path) -> Environment:
     (vendors / "only.icd").write_text(f"{library}\n")
     # With the slash: without it some loaders take the value for a library.
     return {**os.environ, **needs, intel_runtime.VARIABLE: f"{vendors}/", devices.VARIABLE: platform}
+
+
+def main() -> None:
+    """Ask every implementation for a device that works."""
+    works = True
+    with tempfile.TemporaryDirectory() as folder:
+        for name, environment in environments(Path(folder)).items():
+            command = [sys.executable, "-m", "svgf_cl", "devices"]
+            child = subprocess.run(command, env=environment, capture_output=True, text=True)
+            if child.returncode:
+                print(f"{name}: {child.stderr.strip() or child.stdout.strip()}")
+                works = False
+    sys.exit(not works)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,51 @@
+"""Runs the tests on every OpenCL implementation, each in a process of its own, then holds the kernels on all of them to
+the oracle: `make test-all`.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from benchmarks.implementations import Environment, environments
+
+# All that touches a device; the rest is the same everywhere.
+ON_A_DEVICE = (
+    "tests/kernels",
+    "tests/hard",
+    *(f"tests/svgf_cl/test_{name}.py" for name in ("accuracy", "denoiser", "probe", "programs", "stages", "tuning")),
+)
+SUITES = {
+    "PoCL": ("tests",),
+    # The kernels in all their variants; a simulator takes a millisecond and more for every pixel of a frame.
+    "Oclgrind": (
+        *("-p", "tests.oclgrind", "-k", "follows_the_oracle or oclgrind"),
+        *("tests/kernels", "tests/hard/test_variants.py", "tests/test_oclgrind.py"),
+    ),
+}
+
+
+def ends_well(*module: str, environment: Environment | None = None) -> bool:
+    """Run a module of Python with these arguments."""
+    return subprocess.run([sys.executable, "-m", *module], env=environment).returncode == 0
+
+
+def main() -> None:
+    """Run all of it; exit code 1 names where it failed."""
+    failed = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name, environment in environments(Path(folder)).items():
+            print(f"\ntest-all: {name}", flush=True)
+            suite = SUITES.get(name, ON_A_DEVICE)
+            if not ends_well("pytest", "-n", "auto", "--maxprocesses", "8", *suite, environment=environment):
+                failed.append(name)
+    print("\ntest-all: accuracy", flush=True)
+    if not ends_well("benchmarks.accuracy"):
+        failed.append("accuracy")
+    sys.exit(f"test-all: failed: {', '.join(failed)}" if failed else 0)
+
+
+if __name__ == "__main__":
+    main()
