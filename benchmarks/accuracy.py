@@ -53,8 +53,8 @@ as much again, and the polynomial exponential adds 4e-6; the variance sums squar
 """
 
 WHOLE_FILTER = f"""
-The whole filter over a sequence ({PIPELINE_FRAMES} frames of the closed-form room, 160x90), errors building up through the history,
-relative to the picture's mean:
+The whole filter over a sequence ({PIPELINE_FRAMES} frames of the closed-form room, 160x90), errors building up through
+the history, relative to the picture's mean:
 """
 
 
