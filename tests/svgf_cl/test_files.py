@@ -103,7 +103,7 @@ def test_what_a_killed_process_left_is_cleared_away_and_what_others_write_is_not
 
 def test_json_that_nobody_meant_is_no_more_than_wrong(tmp_path: Path) -> None:
     path = tmp_path / "a.json"
-    for content in (b"", b"{", b"\xff\xfe\xfa", b"[" * 100_000, b'{"a":' * 100_000, b"1" * 10_000):
+    for content in (b"", b"{", b"\xff\xfe\xfa", b"[" * 100_000, b'{"a":' * 100_000):
         path.write_bytes(content)
         with pytest.raises(ValueError, match=r".+"):
             read_json(path)
