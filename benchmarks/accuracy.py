@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -139,8 +140,9 @@ def main() -> None:
     if sys.argv[1:] == [HERE]:
         print(json.dumps(measured()))
         return
-    with tempfile.TemporaryDirectory() as folder:
-        found = {name: measured_apart(there) for name, there in environments(Path(folder)).items()}
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor() as pool:
+        processes = environments(Path(folder))
+        found = dict(zip(processes, pool.map(measured_apart, processes.values()), strict=True))
     text = page(found)
     print(text)
     for target in map(Path, sys.argv[1:]):

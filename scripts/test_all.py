@@ -1,5 +1,5 @@
 """Runs the tests on every OpenCL implementation, each in a process of its own, then holds the kernels on all of them to
-the oracle: `make test-all`.
+the oracle: `make test-all`. With ``--brief``, as in CI, all tests run on PoCL, and elsewhere those of every kernel.
 """
 
 from __future__ import annotations
@@ -17,13 +17,12 @@ ON_A_DEVICE = (
     "tests/hard",
     *(f"tests/svgf_cl/test_{name}.py" for name in ("accuracy", "denoiser", "probe", "programs", "stages", "tuning")),
 )
+# The kernels in all their variants.
+KERNELS = ("tests/kernels", "tests/hard/test_variants.py", "-k", "follows_the_oracle or oclgrind")
 SUITES = {
     "PoCL": ("tests",),
-    # The kernels in all their variants; a simulator takes a millisecond and more for every pixel of a frame.
-    "Oclgrind": (
-        *("-p", "tests.oclgrind", "-k", "follows_the_oracle or oclgrind"),
-        *("tests/kernels", "tests/hard/test_variants.py", "tests/test_oclgrind.py"),
-    ),
+    # A simulator takes a millisecond and more for every pixel of a frame.
+    "Oclgrind": ("-p", "tests.oclgrind", "tests/test_oclgrind.py", *KERNELS),
 }
 
 
@@ -33,12 +32,13 @@ def ends_well(*module: str, environment: Environment | None = None) -> bool:
 
 
 def main() -> None:
-    """Run all of it; exit code 1 names where it failed."""
+    """Run all of it, or the brief choice; exit code 1 names where it failed."""
+    elsewhere = KERNELS if sys.argv[1:] == ["--brief"] else ON_A_DEVICE
     failed = []
     with tempfile.TemporaryDirectory() as folder:
         for name, environment in environments(Path(folder)).items():
             print(f"\ntest-all: {name}", flush=True)
-            suite = SUITES.get(name, ON_A_DEVICE)
+            suite = SUITES.get(name, elsewhere)
             if not ends_well("pytest", "-n", "auto", "--maxprocesses", "8", *suite, environment=environment):
                 failed.append(name)
     print("\ntest-all: accuracy", flush=True)
