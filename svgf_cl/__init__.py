@@ -1,5 +1,6 @@
 """svgf_cl: a denoiser for path-traced animation that runs on any OpenCL device."""
 
+from svgf_cl.check import check_frame, check_sequence
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.errors import DeviceError, FrameError, SequenceError, SettingsError, SvgfError
 from svgf_cl.frame import Frame
@@ -16,5 +17,7 @@ __all__ = [
     "SettingsError",
     "SvgfError",
     "Tuning",
+    "check_frame",
+    "check_sequence",
 ]
 __version__ = "0.1.0"

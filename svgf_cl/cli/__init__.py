@@ -10,13 +10,13 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from svgf_cl import __version__
-from svgf_cl.cli import bench, compare, demo, denoise, devices, gallery, render, tune
+from svgf_cl.cli import bench, check, compare, demo, denoise, devices, gallery, render, tune
 from svgf_cl.errors import SvgfError
 
 # Plain help and errors: they read the same in a terminal, in a log and through grep.
 app = typer.Typer(
     invoke_without_command=True,
-    epilog="Exit codes: 0 fine; 1 a comparison failed or a run broke off; 2 wrong input.",
+    epilog="Exit codes: 0 fine; 1 a comparison or check failed, or a run broke off; 2 wrong input.",
     add_completion=False,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
@@ -26,6 +26,7 @@ for command in (
     demo.demo,
     gallery.scenes,
     render.render,
+    check.check,
     denoise.denoise,
     compare.compare,
     tune.tune,

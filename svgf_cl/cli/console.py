@@ -57,12 +57,12 @@ def tracked(items: Iterable[Item], total: int, title: str) -> Iterator[Item]:
             advance()
 
 
-def show(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
-    """Print a table under its title; the first column is words, the others are numbers."""
+def show(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], words: int = 1) -> None:
+    """Print a table under its title; the first `words` columns are words, the others are numbers."""
     print(title)  # not the table's own, which would be wrapped to its width
     table = Table()
     for index, column in enumerate(columns):
-        table.add_column(column, justify="right" if index else "left")
+        table.add_column(column, justify="left" if index < words else "right")
     for row in rows:
         table.add_row(*row)
     Console(width=None if sys.stdout.isatty() else WIDE).print(table)

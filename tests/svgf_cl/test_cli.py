@@ -24,7 +24,7 @@ from svgf_cl.sequence import (
 )
 from tests.svgf_cl.bench.tracing import made_up
 
-COMMANDS = ("devices", "demo", "scenes", "render", "denoise", "compare", "bench", "tune")
+COMMANDS = ("devices", "demo", "scenes", "render", "check", "denoise", "compare", "bench", "tune")
 # Radiance of the sky in either set of a scene's lights.
 LIGHTS = {"lights": 0.5, "alternative_lights": 2.0}
 NAMES = [f"frame.{number:04d}.exr" for number in range(3)]

@@ -1,0 +1,107 @@
+"""The fields of the G-buffer show the same edges in the same places: none is upside down, none of another frame.
+
+Edges of a field correlate with those of the others; of a field that is out of place they do so more with the others'
+mirror image, or with the others of a neighbouring frame.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from svgf_cl.check.check import Check
+from svgf_cl.check.finding import Finding, Unknown
+from svgf_cl.check.view import Array, View, shifted
+
+FIELDS = ("depth", "normal", "albedo", "id", "motion")
+# Second differences between neighbours that make an edge: of one over depth and of the fastest motion, relative; of
+# components of normals; of channels of albedo.
+NEARNESS, MOTION, NORMAL, ALBEDO = 0.05, 0.02, 0.2, 0.1
+MOVING = 0.01  # pixels, the fastest motion that has edges
+CLEARLY = 1.1  # times as much correlation
+CERTAIN = 0.03  # more correlation
+ENOUGH = 2e-3  # share of pixels on edges
+
+
+@lru_cache(maxsize=2)  # of a frame and the one before it
+def edges(view: View) -> dict[str, Array]:
+    """Where each field has edges, (h, w): 0 or 1."""
+    found: dict[str, NDArray[np.generic]] = {
+        "depth": bend(view.nearness) > NEARNESS * view.nearness,
+        "normal": bend(view.normal) > NORMAL,
+    }
+    if view.albedo is not None:
+        found["albedo"] = bend(view.albedo) > ALBEDO
+    if view.id is not None:
+        found["id"] = (view.id != shifted(view.id, 1, 0)) | (view.id != shifted(view.id, 0, 1))
+    fastest = float(np.percentile(np.abs(view.motion), 99))
+    if fastest > MOVING:
+        found["motion"] = bend(view.motion) > MOTION * fastest
+    return {name: values.astype(np.float64) for name, values in found.items() if values.mean() > ENOUGH}
+
+
+def bend(values: Array) -> Array:
+    """How far each pixel (h, w) of (h, w, ...) is from the mean of the neighbours on both sides of it, at most."""
+    both = [shifted(values, dx, dy) + shifted(values, -dx, -dy) - 2 * values for dx, dy in ((1, 0), (0, 1))]
+    most: Array = np.abs(both).reshape(2, *values.shape[:2], -1).max(axis=(0, -1))
+    return most
+
+
+def correlations(first: dict[str, Array], second: dict[str, Array]) -> Array:
+    """Correlation of each field's edges in the first frame with those of the others in the second, (F); else 0."""
+    found = np.zeros(len(FIELDS))
+    for index, name in enumerate(FIELDS):
+        others = [values for other, values in second.items() if other != name]
+        if name in first and others:
+            found[index] = np.nan_to_num(np.corrcoef(first[name].ravel(), np.mean(others, axis=0).ravel())[0, 1])
+    return found
+
+
+def mirrored(view: View) -> Array:
+    """Correlations as is, and with the others upside down; then which fields have any: (3, F)."""
+    now = edges(view)
+    here = correlations(now, now)
+    return np.array([here, correlations(now, {name: values[::-1] for name, values in now.items()}), here != 0])
+
+
+def displaced(before: View, now: View) -> Array:
+    """The same as is, with the others of the frame before, and with the others of the frame after: (4, F)."""
+    old, new = edges(before), edges(now)
+    here = correlations(new, new)
+    return np.array([here, correlations(new, old), correlations(old, new), here != 0])
+
+
+def judged(sums: Array, topic: str, why: str, mistakes: tuple[tuple[str, str], ...]) -> list[Finding | Unknown]:
+    """A mistake is there where a field's edges go clearly better with where it would put the others'."""
+    findings: list[Finding | Unknown] = []
+    alike = []
+    for name, (as_is, *others, frames) in zip(FIELDS, sums.T, strict=True):
+        here, there = max(as_is, 0) / max(frames, 1), max(*others, 0) / max(frames, 1)
+        if there > CLEARLY * here + CERTAIN:
+            what, cure = mistakes[int(np.argmax(others))]
+            measured = f"its edges correlate by {there:.2f} with the other fields' if so, by {here:.2f} as it is"
+            findings.append(Finding(name, what, measured, cure))
+        elif frames and not here > CLEARLY * there + CERTAIN:
+            alike.append(name)
+    if findings or (sums[-1].any() and not alike):
+        return findings
+    return [Unknown(topic, f"{why}: {', '.join(alike) or 'no field has edges'}")]
+
+
+def judge_mirrored(sums: Array) -> list[Finding | Unknown]:
+    """Fields that go with the others' mirror images are upside down."""
+    cure = "row 0 is on top in every field: flip the rows of what was read from a graphics API's buffer"
+    return judged(sums, UPRIGHT.topic, "too much like their mirror images", (("upside down, beside the others", cure),))
+
+
+def judge_displaced(sums: Array) -> list[Finding | Unknown]:
+    """Fields that go with the others of another frame are late or early."""
+    cure = "hand over fields of one moment: is a buffer read before it is written?"
+    mistakes = (("of the frame before, beside the others", cure), ("of the frame after, beside the others", cure))
+    return judged(sums, PUNCTUAL.topic, "no edges that move by a pixel", mistakes)
+
+
+UPRIGHT = Check("G-buffer: the same way up", mirrored, judge_mirrored)
+PUNCTUAL = Check("G-buffer: of the same frame", displaced, judge_displaced, frames=2, trusts=FIELDS)

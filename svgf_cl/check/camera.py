@@ -1,0 +1,125 @@
+"""The camera's path, told from motion: and whether anything is added to it that is no camera's, such as jitter.
+
+What a camera saw at (x, y, z) it sees from elsewhere, as long as nothing else moves, at
+
+    (x', y') = (A1 . (x, y, 1) + b1 / z, A2 . (x, y, 1) + b2 / z) / (A3 . (x, y, 1) + b3 / z),   A = K R K^-1,
+
+x and y being pixels from the middle of the image. K holds the focal length, and in A's first two rows whatever is added
+to all motion alike: as R is a rotation, rows 1 and 2 of A K are at a right angle to row 3 without it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from svgf_cl.check.check import Check
+from svgf_cl.check.finding import Finding, Unknown
+from svgf_cl.check.view import Array, View, pixel_centers, sample
+
+SAMPLES = 2000
+ENOUGH = 100  # pixels
+FLAT = 0.02  # by how much one over depth, relative to its median, must be off a plane for A and b to differ
+TURNS = 20  # of a fit in which each pixel counts the less the worse it fits
+STEADY = 0.02  # pixels by which motion may differ from a camera's
+FOLLOW = 0.4  # share of pixels that must move as the camera does
+FOCAL_LENGTHS = np.geomspace(0.3, 6.0, 400)  # in image heights
+NOTICED = 0.08  # pixels
+SAME = 0.8  # length of the mean offset over that of a single one
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """How the camera moved from one frame to the next.
+
+    Parameters
+    ----------
+    matrix : (3, 3)
+        A, for x and y in pixels from the middle of the image.
+    """
+
+    matrix: Array
+
+    def turn(self, focal: float) -> float:
+        """By about how much it turned, in radians, for a focal length in pixels."""
+        a = self.matrix
+        return float(focal * np.hypot(*a[2, :2]) + abs(a[0, 1] - a[1, 0]) / 2)
+
+    def offset(self, focal: Array) -> Array:
+        """What is added to all motion alike, (n, 2) in pixels, for focal lengths (n) in pixels."""
+        rows = self.matrix * np.stack([focal, focal, np.ones_like(focal)], axis=-1)[:, None]
+        added: Array = (rows[:, :2] @ rows[:, 2, :, None])[..., 0] / (rows[:, 2:] ** 2).sum(axis=-1)
+        return added
+
+
+@lru_cache(maxsize=1)  # several checks want it of the same frame
+def path(view: View) -> Path | None:
+    """What motion says of the camera; None where most moves by itself, or where all is on one plane."""
+    pixels = sample(view.hit, SAMPLES)
+    if len(pixels) < ENOUGH:
+        return None
+    unit = 0.5 * view.shape[1]  # in which all numbers are about 1
+    x, y = (axis.ravel()[pixels] / unit for axis in pixel_centers(view.shape))
+    near = view.nearness.ravel()[pixels] * typical_depth(view)
+    flat = np.stack([x, y, np.ones_like(x)], axis=-1)
+    if np.std(near - flat @ np.linalg.lstsq(flat, near, rcond=None)[0]) < FLAT:
+        return None
+    here = np.column_stack([flat, near])
+    past = flat[:, :2] + view.motion.reshape(-1, 2)[pixels] / unit
+    nothing = np.zeros_like(here)
+    system = np.concatenate(
+        [
+            np.column_stack([here, nothing, -past[:, :1] * here[:, [0, 1, 3]]]),
+            np.column_stack([nothing, here, -past[:, 1:] * here[:, [0, 1, 3]]]),
+        ]
+    )
+    right, weight = past.T.ravel(), np.ones(len(pixels))
+    for _ in range(TURNS):
+        weighted = system * np.tile(weight, 2)[:, None]
+        a = np.linalg.lstsq(weighted.T @ system, weighted.T @ right, rcond=None)[0]
+        off = np.hypot(*(system @ a - right).reshape(2, -1)) * unit
+        weight = 1 / (1 + (off / max(float(np.median(off)), 1e-5)) ** 2)
+    if np.mean(off < STEADY) < FOLLOW:
+        return None
+    scale = np.diag([unit, unit, 1.0])
+    return Path(scale @ np.array([a[:3], a[4:7], [a[8], a[9], 1.0]]) @ np.linalg.inv(scale))
+
+
+def typical_depth(view: View) -> float:
+    """The median of what was hit."""
+    return float(np.median(view.depth[view.hit]))
+
+
+def offsets(before: View, now: View) -> Array | None:
+    """Frames; for each of `FOCAL_LENGTHS` the offset's x and y in pixels of the frame, and its square: (4, n)."""
+    del before  # motion alone tells, but the first frame's leads nowhere
+    camera = path(now)
+    if camera is None:
+        return None
+    offset = camera.offset(FOCAL_LENGTHS * now.shape[0]) * now.step
+    return np.array([np.ones(len(offset)), *offset.T, (offset**2).sum(axis=-1)])
+
+
+def judge(sums: Array) -> list[Finding | Unknown]:
+    """Whatever the focal length, a camera's motion has no offset; that of jitter changes from frame to frame."""
+    frames, x, y, square = sums[:, np.argmin(sums[3])].tolist()
+    length = np.sqrt(square / frames)
+    if length < NOTICED:
+        return []
+    if np.hypot(x, y) / frames > SAME * length:
+        return [Unknown(JITTER.topic, "all motion has the same offset in every frame, as where a large thing slides")]
+    measured = f"{length:.2f} pixels, other ones in every frame, are added to all motion alike, as no camera moves"
+    cure = "project with both frames' unjittered matrices, or subtract this frame's offset and add the previous one's"
+    return [Finding("motion", "jitter left in", measured, cure)]
+
+
+JITTER = Check(
+    "motion: free of jitter",
+    offsets,
+    judge,
+    "too much moves by itself, or all is on one plane",
+    frames=2,
+    trusts=("normal", "depth", "motion"),
+)

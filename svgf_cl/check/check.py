@@ -1,0 +1,50 @@
+"""`Check`: one thing to be known of frames. What it measures adds up over frames; the sum is judged."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from svgf_cl.check.finding import Finding, Unknown
+from svgf_cl.check.view import Array, View
+
+
+@dataclass(frozen=True, eq=False)
+class Check:
+    """One idea of what may be wrong.
+
+    Parameters
+    ----------
+    topic : str
+        What is looked at, as users read it: ``"motion: direction, axes, unit"``.
+    measure : callable
+        What a frame says, or the frame before and a frame: sums or counts. None where it says nothing.
+    judge : callable
+        From the sum over frames to what is wrong, and what cannot be told; neither where all is well.
+    silence : str
+        Why frames may say nothing.
+    frames : int
+        How many frames in a row `measure` takes.
+    trusts : tuple of str
+        Fields that it takes for right: where one is known to be wrong it would only tell of that again.
+    """
+
+    topic: str
+    measure: Callable[..., Array | None]
+    judge: Callable[[Array], Sequence[Finding | Unknown]]
+    silence: str = ""
+    frames: int = 1
+    trusts: tuple[str, ...] = ()
+
+    def ask(self, views: Sequence[View]) -> Array | None:
+        """What the last of some frames in a row say."""
+        return self.measure(*views[-self.frames :]) if len(views) >= self.frames else None
+
+    def verdict(self, total: Array | None, wrong: set[str], count: int) -> Sequence[Finding | Unknown]:
+        """Judge the sum over `count` frames, some fields being known to be wrong."""
+        first = [name for name in self.trusts if name in wrong]
+        if first:
+            return [Unknown(self.topic, f"mend {first[0]} first")]
+        if count < self.frames:
+            return [Unknown(self.topic, f"it takes {self.frames} frames in a row")]
+        return [Unknown(self.topic, self.silence)] if total is None else self.judge(total)

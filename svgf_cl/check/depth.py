@@ -1,0 +1,118 @@
+"""Depth: the distance along the camera's axis, told from other encodings by how planes look in them.
+
+On a plane seen in perspective one over the distance along the axis is affine in x and y: of three pixels in a row, the
+middle one has the mean of both ends. Of three pixels with one normal this is tried with what was given, and with what
+would undo a mistake; each votes for the clearly straightest.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from svgf_cl.check.check import Check
+from svgf_cl.check.finding import Finding, Unknown
+from svgf_cl.check.view import Array, View, Whole, pixel_centers, sample
+
+SAMPLES = 10000  # pixels that may turn out to be on planes
+REACH = 1 / 30  # of the image's height, from the middle pixel to both others
+SAME = 1e-3  # between components of normals on one plane
+PRECISION = 2e-6  # relative error of depth that is rounding
+CLEARLY = 0.3  # of the other's error
+ENOUGH = 50  # votes
+FLAT = 3e-3  # of depth: how much less three pixels on a plane vary if they are as good as at one distance
+ONE_WAY = 0.9  # length of the mean normal, from which on all planes may well face the camera
+FOCAL_LENGTHS = np.geomspace(0.3, 4.0, 16)  # in image heights, of cameras that may have measured along the ray
+
+NOT_LINEAR = (
+    "not linear: a depth buffer, or one over the distance",
+    "convert: near far / (far - d (far - near)) if 0 is near and 1 is far; 1 / d of the reciprocal",
+)
+MISTAKES = (
+    NOT_LINEAR,  # depth itself is straight
+    ("does not begin at the camera: scaled between near and far plane", "convert: near + d (far - near)"),
+    ("inverted: it falls with the distance", "convert: far - d of what was far - z"),
+    *[("measured along the ray", "multiply by the cosine between the ray and the camera's axis")] * len(FOCAL_LENGTHS),
+    NOT_LINEAR,  # all is as good as at one distance, as in a buffer whose near plane is very near: told last
+)
+
+
+def votes(view: View) -> Array | None:
+    """Votes for each of `MISTAKES`, and against it: (2, mistakes)."""
+    pixels = triples(view)
+    if len(pixels) < ENOUGH:
+        return None
+    depth, x, y = (values.ravel()[pixels] for values in (view.depth, *pixel_centers(view.shape)))
+    given = error(1 / depth, depth)
+    offset = origin(depth)
+    beyond = np.where(depth == offset, np.nan, depth - offset)
+    moved = np.nan_to_num(error(1 / beyond, beyond**2 / depth), nan=np.inf)
+    oblique = np.sqrt(1 + (x**2 + y**2) / (FOCAL_LENGTHS[:, None, None] * view.shape[0]) ** 2)
+    neither = np.full(len(depth), np.inf)
+    errors = np.stack(
+        [
+            error(depth, 1 / depth),
+            moved if offset < 0 else neither,
+            moved if offset > 0 else neither,
+            *(error(o / depth, depth / o) for o in oblique),
+            neither,
+        ]
+    )
+    wins = (errors <= errors.min(axis=0)) & (errors < CLEARLY * given)
+    losses = given < CLEARLY * errors
+    tilted = np.linalg.norm(view.normal.reshape(-1, 3)[pixels[:, 1]].mean(axis=0)) < ONE_WAY
+    wins[-1] = (np.ptp(depth, axis=1) < FLAT * depth[:, 1]) & (depth.max() <= 1) & tilted
+    losses[-1] = ~wins[-1]
+    return np.array([wins.sum(axis=1), losses.sum(axis=1)], np.float64)
+
+
+def triples(view: View) -> Whole:
+    """Three pixels in a row on one plane, as indices into the flattened image: (n, 3)."""
+    (height, width), reach = view.shape, max(round(REACH * view.shape[0]), 2)
+    found = []
+    for dx, dy in ((reach, 0), (0, reach)):
+        middle = np.zeros(view.shape, np.bool_)
+        middle[dy : height - dy, dx : width - dx] = True
+        pixels = sample(middle & view.hit, SAMPLES)[:, None] + np.array([-1, 0, 1]) * (dy * width + dx)
+        normal, hit = view.normal.reshape(-1, 3)[pixels], view.hit.ravel()[pixels].all(axis=-1)
+        found.append(pixels[hit & (np.ptp(normal, axis=1).max(axis=-1) < SAME)])
+    return np.concatenate(found)
+
+
+def error(values: Array, sensitivity: Array) -> Array:
+    """How far the middle of three values (n, 3), made of depth, is from the mean of both ends: (n), as relative depth.
+
+    `sensitivity` says by how much depth changes, relative to itself, where they change by 1.
+    """
+    bend = values[:, 0] + values[:, 2] - 2 * values[:, 1]
+    off: Array = np.maximum(np.abs(bend * sensitivity[:, 1]), PRECISION)
+    return off
+
+
+def origin(depth: Array) -> float:
+    """The c for which 1 / (depth - c) is straight in most triples (n, 3); 0 where depth itself is the distance.
+
+    1 / (value - c) is straight in a, b, d if c (a + d - 2 b) = 2 a d - b (a + d).
+    """
+    a, b, d = depth.T
+    curved, product = a + d - 2 * b, 2 * a * d - b * (a + d)
+    told = np.abs(curved) > 10 * PRECISION * b
+    found = float(np.median(product[told] / curved[told])) if told.any() else 0.0
+    return found if abs(found) > 1e-2 * float(np.median(depth)) else 0.0
+
+
+def judge(sums: Array) -> list[Finding | Unknown]:
+    """A mistake is there where it has many votes, and hardly any against it."""
+    wins, losses = sums
+    *plain, last = (wins >= ENOUGH) & (wins > 4 * losses)
+    best = int(np.argmax(np.where(plain, wins[:-1], 0))) if any(plain) else len(wins) - 1
+    if any(plain) or last:
+        what, cure = MISTAKES[best]
+        return [
+            Finding("depth", what, f"{wins[best]:g} of {wins[best] + losses[best]:g} planes are plane only if so", cure)
+        ]
+    if min(losses[0], losses[3:-1].max()) >= ENOUGH:
+        return []
+    return [Unknown(ENCODING.topic, "too few slanted planes, or depth too coarse")]
+
+
+ENCODING = Check("depth: linear, along the camera's axis", votes, judge, "too few planes", trusts=("normal", "depth"))

@@ -1,0 +1,95 @@
+"""What a check says: what is wrong, what could not be told, what is right."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+# What svgf_cl takes each field for: docs/conventions.md in a line.
+EXPECTED = {
+    "color": "linear HDR radiance as the renderer sums it up, noisy, not yet meant for a display",
+    "normal": "world-space unit vectors, 0 where nothing was hit",
+    "depth": "distance along the camera's axis, linear, above 0, +inf where nothing was hit",
+    "motion": "previous minus current position in pixels, x right, y down, unjittered; then that of depth",
+    "albedo": "linear reflectance, 0 to 1",
+    "id": "whole numbers; the same object has the same one in every frame",
+    "emission": "linear radiance of what shines itself, contained in color",
+    "direct": "linear radiance, color = direct + indirect + emission",
+    "indirect": "linear radiance, color = direct + indirect + emission",
+}
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that is wrong with the frames.
+
+    Parameters
+    ----------
+    field : str
+        Name of the field of `Frame`.
+    what : str
+        What is wrong with it, always in the same words.
+    measured : str
+        The figures that say so.
+    cure : str
+        What to do.
+    severity : {"error", "warning"}
+        An error spoils the picture. A warning costs quality, or is none if it is meant so.
+    """
+
+    field: str
+    what: str
+    measured: str
+    cure: str
+    severity: Literal["error", "warning"] = "error"
+
+    @property
+    def expected(self) -> str:
+        """What svgf_cl takes the field for."""
+        return EXPECTED[self.field]
+
+    def __str__(self) -> str:
+        return f"{self.field}: {self.what} ({self.measured}); expected {self.expected}; {self.cure}"
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """Something that these frames cannot tell.
+
+    Parameters
+    ----------
+    topic : str
+        What would have been checked.
+    why : str
+        What the frames lack.
+    """
+
+    topic: str
+    why: str
+
+    def __str__(self) -> str:
+        return f"{self.topic}: not checked: {self.why}"
+
+
+@dataclass(frozen=True)
+class Report:
+    """All that was found out about some frames.
+
+    Parameters
+    ----------
+    findings : tuple of Finding
+        What is wrong; the first is the one to mend first.
+    unknown : tuple of Unknown
+        What could not be told. It is not passed.
+    passed : tuple of str
+        What was looked at and is right.
+    """
+
+    findings: tuple[Finding, ...]
+    unknown: tuple[Unknown, ...]
+    passed: tuple[str, ...]
+
+
+def percent(part: float, whole: float) -> str:
+    """Write a share of pixels as people do: ``"3.21 % of the pixels"``."""
+    return f"{100 * part / max(whole, 1):.3g} % of the pixels"

@@ -1,0 +1,193 @@
+"""Colour is proportional to albedo, and contains emission; one that was encoded for a display does neither.
+
+Neighbours of one direction get the same light, and their colours are as their albedos. In spite of noise that holds in
+the mean: of two colours, each divided by its own albedo, (a - b) / (a + b) is 0 on average. The same is tried with
+colour or albedo decoded first: where it holds then, and not without, they were encoded.
+
+All is kept apart by how bright the albedos are and by how much they differ: an offset, such as gloss, does not pass for
+a curve then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from svgf_cl.check.check import Check
+from svgf_cl.check.finding import Finding, Unknown, percent
+from svgf_cl.check.view import Array, View, Whole, sample
+
+DARK = 0.02  # albedo that is too little to tell
+# Where cells begin: of albedo, the first at 0; of the logarithm of the ratio of two.
+LEVELS, CONTRASTS = (0.15, 0.35), (0.15, 0.4, 0.8)
+CELLS = (len(LEVELS) + 1) * len(CONTRASTS)
+SAMPLES = 12000  # pixels, each with two neighbours
+ENOUGH = 1000  # pairs in a cell
+VARIED = 2  # cells: in a single one an offset looks like a curve
+# Median over cells of the mean of (a - b) / (a + b), as a share of that of albedo: up to where it passes for 0; from
+# where on it does not, and how much farther from 0 than that of the cure.
+HOLDS, FAILS, FARTHER = 0.15, 0.25, 2.5
+MOST = 0.75  # of the pairs must be in cells that a cure betters
+DARKER = 0.02  # than its emission alone, relative: what half floats leave
+SOME = 0.5  # of what shines, more than moves on in a frame
+
+
+def srgb_decoded(values: Array) -> Array:
+    """Light of what is shown, by the curve of IEC 61966-2-1."""
+    positive = np.maximum(values, 0)
+    return np.where(positive <= 0.04045, positive / 12.92, ((positive + 0.055) / 1.055) ** 2.4)
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A way in which colour does not go with albedo, and what undoes it.
+
+    Parameters
+    ----------
+    field, what, cure : str
+    color, albedo : callable
+        What undoes an encoding.
+    arranged : str
+        How colour is put beside the G-buffer to undo it: ``as given``, ``late`` or ``flipped``.
+    """
+
+    field: str
+    what: str
+    cure: str
+    color: Callable[[Array], Array] = np.asarray
+    albedo: Callable[[Array], Array] = np.asarray
+    arranged: str = "as given"
+
+
+ENCODED = "encoded for a display: sRGB, gamma or tone-mapped"
+LINEAR = "hand over linear radiance, before any view transform"
+MISTAKES = (
+    Mistake("albedo", "encoded in sRGB", "decode textures to linear, as the renderer does", albedo=srgb_decoded),
+    Mistake("color", ENCODED, LINEAR, color=srgb_decoded),
+    Mistake("color", ENCODED, LINEAR, color=lambda color: color / np.maximum(1 - color, 1e-4)),
+    Mistake("color", "divided by albedo", "multiply it by albedo again, or leave albedo out", albedo=np.ones_like),
+    Mistake("color", "of the frame before, beside albedo", "hand over fields of one moment", arranged="late"),
+    Mistake("color", "upside down, beside albedo", "row 0 is on top in every field: flip it", arranged="flipped"),
+)
+AS_GIVEN = Mistake("", "", "")
+
+
+def imbalances(before: View, now: View) -> Array | None:
+    """Of pairs of neighbours, in cells by albedo and contrast, as given and with every cure: their number, their sum of
+    (a - b) / (a + b), a being that of more albedo, and that of their albedos.
+
+    Returns
+    -------
+    (1 + mistakes, 3, CELLS)
+    """
+    if now.albedo is None or before.albedo is None:
+        return None
+    pairs = {
+        "as given": neighbors(now, now.color),
+        "late": neighbors(before, now.color),
+        "flipped": neighbors(now, now.color[::-1]),
+    }
+    found = []
+    for mistake in (AS_GIVEN, *MISTAKES):
+        color, albedo, cell = pairs[mistake.arranged]
+        seen, reflectance = mistake.color(color), mistake.albedo(albedo)
+        a, b = seen[0] * reflectance[1], seen[1] * reflectance[0]
+        weights = np.ones(len(cell)), (a - b) / np.maximum(a + b, 1e-12), (albedo[0] - albedo[1]) / albedo.sum(axis=0)
+        found.append([np.bincount(cell, weight, CELLS) for weight in weights])
+    return np.array(found)
+
+
+def neighbors(view: View, color: Array) -> tuple[Array, Array, Whole]:
+    """Colour and albedo (2, n) of neighbours of one direction, the greater albedo first; and the cell of each pair."""
+    assert view.albedo is not None  # seen to by `imbalances`
+    width = view.shape[1]
+    pixels = sample(view.reflecting, SAMPLES)
+    pixels = pixels[pixels < view.depth.size - width]  # what is right of a row's end lies elsewhere: it is not alike
+    pair = np.concatenate([np.stack([pixels, pixels + step]) for step in (1, width)], axis=1)
+    normal, depth = view.normal.reshape(-1, 3)[pair], view.depth.ravel()[pair]
+    alike = view.reflecting.ravel()[pair[1]] & ((normal[0] * normal[1]).sum(axis=-1) > 0.99)
+    alike &= np.abs(depth[0] - depth[1]) < 0.1 * depth[0]
+    light, albedo = (values.reshape(-1, 3)[pair[:, alike]].reshape(2, -1) for values in (color, view.albedo))
+    told = (albedo.min(axis=0) > DARK) & (light.max(axis=0) > 0)
+    order = np.argsort(-albedo[:, told], axis=0)
+    light, albedo = (np.take_along_axis(values[:, told], order, axis=0) for values in (light, albedo))
+    level = np.digitize(np.sqrt(albedo[0] * albedo[1]), LEVELS)
+    contrast = np.digitize(np.log(albedo[0] / albedo[1]), CONTRASTS)
+    differ = contrast > 0
+    return light[:, differ], albedo[:, differ], (level * len(CONTRASTS) + contrast - 1)[differ]
+
+
+def judge_curve(sums: Array) -> list[Finding | Unknown]:
+    """The one cure with which colour goes with albedo."""
+    cells = (sums[:, 0] >= ENOUGH).all(axis=0)
+    if np.count_nonzero(cells) < VARIED:
+        return [Unknown(CURVE.topic, "albedo hardly varies on surfaces")]
+    count, imbalance, contrast = np.moveaxis(sums[..., cells], 1, 0)
+    off = np.abs(imbalance) / contrast
+    given, *fits = map(weighted_median, off, count)
+    # Colour that is out of place never has more contrast than albedo tells.
+    possible = [mistake.arranged == AS_GIVEN.arranged or imbalance[0].sum() < 0 for mistake in MISTAKES]
+    cured = np.where(possible, fits, np.inf)
+    best = int(np.argmin(cured))
+    mistake, least = MISTAKES[best], cured[best]
+    if given <= HOLDS and given < least:
+        return [] if max(fits) > FAILS else [Unknown(CURVE.topic, "albedo hardly varies on surfaces")]
+    betters = count[0, off[1 + best] < off[0]].sum() > MOST * count[0].sum()
+    if not betters or least > HOLDS or given < max(FAILS, FARTHER * least):
+        return [Unknown(CURVE.topic, "colour does not go with albedo in a simple way, as where there is gloss")]
+    if (
+        min(value for other, value in zip(MISTAKES, cured, strict=True) if other.what != mistake.what)
+        < 1.5 * least + 0.02
+    ):
+        return [
+            Unknown(
+                CURVE.topic, f"something is wrong, perhaps {mistake.field} is {mistake.what}, but others fit as well"
+            )
+        ]
+    measured = (
+        f"from pixel to pixel it misses albedo's contrast by {100 * given:.0f} %, by {100 * least:.0f} % with the cure"
+    )
+    return [Finding(mistake.field, mistake.what, measured, mistake.cure)]
+
+
+def weighted_median(values: Array, weights: Array) -> float:
+    """The value (n) with as much weight (n) below it as above."""
+    order = np.argsort(values)
+    return float(values[order][np.searchsorted(np.cumsum(weights[order]), 0.5 * weights.sum())])
+
+
+def shining(view: View) -> Array | None:
+    """Pixels that shine; those darker than what they emit; of these, those that are not so once decoded from sRGB."""
+    if view.emission is None:
+        return None
+    emission, color = (values[view.hit & (view.emission.max(axis=-1) > 0)] for values in (view.emission, view.color))
+    if not len(emission):
+        return None
+    least = emission * (1 - DARKER)
+    darker = (color < least).any(axis=-1)
+    decoded = (srgb_decoded(color) >= least).all(axis=-1)
+    return np.array([len(emission), darker.sum(), (darker & decoded).sum()], np.float64)
+
+
+def judge_shining(sums: Array) -> list[Finding]:
+    """Colour contains emission."""
+    pixels, darker, decoded = sums
+    if darker <= SOME * pixels:
+        return []
+    measured = f"in {percent(darker, pixels)} that shine"
+    if decoded > 0.9 * darker:
+        return [Finding("color", ENCODED, f"darker than emission {measured}, as bright once decoded", LINEAR)]
+    return [Finding("color", "darker than the emission in it", measured, f"{LINEAR}, emission included")]
+
+
+CURVE = Check(
+    "color, albedo: linear",
+    imbalances,
+    judge_curve,
+    "no albedo was given",
+    frames=2,
+    trusts=("color", "albedo", "normal", "depth"),
+)
+SHINING = Check("color: contains emission", shining, judge_shining, "nothing shines", trusts=("color", "emission"))

@@ -1,0 +1,161 @@
+"""What becomes of a surface from one frame to the next: its id, the direction it faces, its depth.
+
+Pixels that show the same surface in both frames are found by motion, and told from chance by depth.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from svgf_cl.check.camera import path
+from svgf_cl.check.check import Check
+from svgf_cl.check.finding import Finding, Unknown, percent
+from svgf_cl.check.view import Array, Mask, View, Whole, sample, shifted
+from svgf_cl.settings import Settings
+
+EDGE = 0.1  # relative difference of depth between surfaces, not within one
+ENOUGH = 300  # pixels
+SAMPLES = 3000
+KEPT = 5e-4  # between normals that are the same
+TURNED = 2e-3  # radians by which a camera turns that would show
+FLAT = 1e-4  # between neighbours on a plane
+BETTER = 0.8  # an error that much smaller tells
+
+
+@lru_cache(maxsize=1)  # several checks want it of the same pair
+def followed(before: View, now: View) -> tuple[Mask, tuple[Whole, Whole]]:
+    """Which pixels (h, w) show a surface that the frame before shows too, and in which row and column (n) that does."""
+    height, width = now.shape
+    y, x = np.indices(now.shape)
+    columns, rows = (np.rint(p + now.motion[..., axis]) for axis, p in enumerate((x, y)))
+    inside = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
+    there = tuple(np.where(inside, p, 0).astype(int) for p in (rows, columns))
+    same = inside & interior(now) & interior(before)[there]
+    same &= np.abs(now.depth * before.nearness[there] - 1) < EDGE
+    return same, (there[0][same], there[1][same])
+
+
+@lru_cache(maxsize=2)  # of a frame and the one before it
+def interior(view: View) -> Mask:
+    """Pixels without an edge of depth within two pixels."""
+    near = np.stack([shifted(view.nearness, dx, dy) for dx in (-2, 0, 2) for dy in (-2, 0, 2)])
+    smooth: Mask = view.hit & (np.ptp(near, axis=0) < EDGE * view.nearness)
+    return smooth
+
+
+def names(before: View, now: View) -> Array | None:
+    """Pixels found again; of the same id there; of the id that most of their object has there."""
+    if now.id is None or before.id is None:
+        return None
+    same, there = followed(before, now)
+    ids, past = now.id[same], before.id[there]
+    pairs, counts = np.unique(ids << 32 | past, return_counts=True)
+    objects = np.flatnonzero(np.diff(pairs >> 32, prepend=-1))
+    together = np.maximum.reduceat(counts, objects).sum() if len(ids) else 0
+    return np.array([len(ids), np.count_nonzero(ids == past), together], np.float64)
+
+
+def judge_names(sums: Array) -> list[Finding | Unknown]:
+    """Objects that keep together and yet change id were renamed."""
+    found, kept, together = sums
+    if found < ENOUGH:
+        return [Unknown(NAMES.topic, "too little is found again in the frame before")]
+    measured = f"{percent(found - kept, found)} that show the same surface as before have another id"
+    if together - kept > 0.05 * found:
+        cure = "number objects once for the whole sequence, not by their order in a frame"
+        return [Finding("id", "the same object changes its id between frames", measured, cure)]
+    if kept < 0.7 * found:
+        return [Finding("id", "changes from pixel to pixel", measured, "give objects ids, not triangles or samples")]
+    return []
+
+
+def turns(before: View, now: View) -> Array | None:
+    """Pixels on planes, found again: all; of the same normal; of normals turned all alike; whether the camera turns."""
+    same, there = followed(before, now)
+    bends = [np.abs(shifted(now.normal, *step) - now.normal).max(axis=-1) for step in ((1, 0), (0, 1))]
+    plane = sample((np.maximum(*bends) < FLAT)[same] & before.hit[there], SAMPLES)
+    normal, past = now.normal[same][plane], before.normal[there][plane]
+    if len(normal) < ENOUGH:
+        return None
+    apart = np.linalg.norm(normal - past, axis=-1)
+    left = np.linalg.norm(normal @ rotation_between(normal, past).T - past, axis=-1)
+    alike = (apart > KEPT) & (left < 0.25 * apart)
+    camera = path(now)
+    turned = camera is not None and camera.turn(now.shape[0]) > TURNED
+    return np.array([len(normal), np.count_nonzero(apart <= KEPT), np.count_nonzero(alike), turned], np.float64)
+
+
+def rotation_between(normal: Array, past: Array) -> Array:
+    """The rotation (3, 3) that turns most normals (n, 3) into their past ones: Kabsch's, each trusted as it fits."""
+    weight = np.ones(len(normal))
+    for _ in range(8):
+        u, _, v = np.linalg.svd((past * weight[:, None]).T @ normal)
+        rotation: Array = u @ v
+        off = np.linalg.norm(past - normal @ rotation.T, axis=-1)
+        weight = 1 / (1 + (off / max(float(np.median(off)), 1e-5)) ** 2)
+    return rotation
+
+
+def judge_turns(sums: Array) -> list[Finding | Unknown]:
+    """Where most normals turn together, it is the camera that turns."""
+    found, kept, alike, turned = sums
+    if alike > 0.6 * found:
+        measured = f"from frame to frame they turn, all alike, in {percent(alike, found)} on planes"
+        return [Finding("normal", "in view space", measured, "multiply by the rotation from camera to world")]
+    if turned and kept > 0.5 * found:
+        return []
+    why = "the camera does not turn" if kept > 0.5 * found else "too few planes are found again"
+    return [Unknown(WORLD.topic, why)]
+
+
+def deeper(before: View, now: View) -> Array | None:
+    """Pixels found again; whose depth changes by more than history bears; how far, as a share of depth, each reading
+    of the third component is off: none, as given, negated, the previous depth itself.
+    """
+    same, there = followed(before, now)
+    if not same.any():
+        return None
+    depth = now.depth[same]
+    change = before.depth[there] / depth - 1
+    lost = np.count_nonzero(np.abs(change) > Settings().depth_threshold)
+    given = np.zeros_like(depth) if now.deeper is None else now.deeper[same] / depth
+    off = [np.minimum(np.abs(reading - change), EDGE).sum() for reading in (0 * given, given, -given, given - 1)]
+    return np.array([len(depth), lost, now.deeper is not None, *off])
+
+
+def judge_deeper(sums: Array) -> list[Finding | Unknown]:
+    """The right reading is nearest to what became of depth."""
+    found, lost, there, none, given, negated, absolute = sums
+    if not there:
+        if lost < 0.5 * found:
+            return [Unknown(DEEPER.topic, "none was given, and depth changes little")]
+        measured = f"depth changes by more than {100 * Settings().depth_threshold:g} % in {percent(lost, found)}"
+        return [Finding("motion", "without third component", measured, "give previous minus current depth", "warning")]
+    wrong = {
+        negated: ("third component of the wrong sign", "negate it"),
+        absolute: ("third component is the previous depth itself", "subtract the current depth"),
+    }
+    best = min(wrong)
+    if best < BETTER * min(given, none):
+        what, cure = wrong[best]
+        measured = (
+            f"it misses the depth before by {100 * given / found:.2g} %, {100 * best / found:.2g} % with the cure"
+        )
+        return [Finding("motion", what, measured, cure)]
+    return [] if given < BETTER * min(none, negated) else [Unknown(DEEPER.topic, "no depth changes noticeably")]
+
+
+NAMES = Check("id: kept by objects", names, judge_names, "no id was given", frames=2, trusts=("depth", "motion"))
+WORLD = Check(
+    "normal: in world space",
+    turns,
+    judge_turns,
+    "too few planes are found again",
+    frames=2,
+    trusts=("normal", "depth", "motion"),
+)
+DEEPER = Check(
+    "motion: third component", deeper, judge_deeper, "nothing is found again", frames=2, trusts=("depth", "motion")
+)

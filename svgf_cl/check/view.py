@@ -1,0 +1,127 @@
+"""`View`: a frame as the checks look at it, in float64, with what cannot be used taken out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from svgf_cl.frame import Frame, Shape
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Whole = NDArray[np.int64]
+
+# Rows that suffice. Of a higher frame every second, third... row and column is looked at: those make a frame too.
+ENOUGH_ROWS = 400
+# Depth beyond so many times the median stands for "nothing hit", whatever it should.
+FAR = 1e4
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """A frame on the host, of which every `step`-th pixel is looked at: (h, w) of them.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of numpy arrays, every pixel, as it was given.
+    step : int
+    color : (h, w, 3)
+        All radiance; the sum of `direct`, `indirect` and `emission` where color was left out.
+    normal : (h, w, 3)
+    depth : (h, w)
+        0 where it cannot be used.
+    motion : (h, w, 2)
+        In pixels of the view.
+    deeper : (h, w), optional
+        The third component of motion.
+    albedo, emission : (h, w, 3), optional
+    id : (h, w), optional
+    hit : (h, w)
+        Where the denoiser sees a surface.
+    nearness : (h, w)
+        One over depth, which is linear in x and y on a plane; 0 where nothing was hit.
+    reflecting : (h, w)
+        Where a surface was hit that does not shine itself.
+    """
+
+    frame: Frame
+    step: int
+    color: Array
+    normal: Array
+    depth: Array
+    motion: Array
+    deeper: Array | None
+    albedo: Array | None
+    emission: Array | None
+    id: Whole | None
+    hit: Mask
+    nearness: Array
+    reflecting: Mask
+
+    @property
+    def shape(self) -> Shape:
+        """(height, width) of what is looked at."""
+        height, width = self.depth.shape
+        return height, width
+
+    @classmethod
+    def of(cls, frame: Frame) -> View:
+        """Look at a frame; arrays on a device are copied from there."""
+        given = {name: on_host(value) for name, value in frame.present().items()}
+        step = -(-given["depth"].shape[0] // ENOUGH_ROWS)
+        some = {name: value[(step - 1) // 2 :: step, (step - 1) // 2 :: step] for name, value in given.items()}
+        finite = {name: np.nan_to_num(value.astype(np.float64), posinf=0, neginf=0) for name, value in some.items()}
+        parts = [finite[name] for name in ("direct", "indirect", "emission") if name in finite]
+        depth, motion, emission = np.maximum(finite["depth"], 0), finite["motion"], finite.get("emission")
+        depth[depth > FAR * typical(depth)] = 0
+        hit = (depth > 0) & (np.abs(finite["normal"]).max(axis=-1) > 1e-6)
+        return cls(
+            frame=Frame(**given),
+            step=step,
+            color=finite["color"] if "color" in finite else np.sum(parts, axis=0),
+            normal=finite["normal"],
+            depth=depth,
+            motion=motion[..., :2] / step,
+            deeper=motion[..., 2] if motion.shape[-1] == 3 else None,
+            albedo=finite.get("albedo"),
+            emission=emission,
+            id=some["id"].astype(np.int64) if "id" in some else None,
+            hit=hit,
+            nearness=np.divide(1, depth, out=np.zeros_like(depth), where=hit),
+            reflecting=hit if emission is None else hit & (emission.max(axis=-1) <= 0),
+        )
+
+
+def on_host(value: Any) -> NDArray[Any]:
+    """A numpy.ndarray of it; a pyopencl.array.Array is copied from its device."""
+    return np.asarray(value.get() if hasattr(value, "get") else value)
+
+
+def shifted(values: NDArray[Any], dx: int, dy: int) -> NDArray[Any]:
+    """What lies (dx, dy) pixels further, the border repeated: (h, w, ...) like `values`."""
+    height, width = values.shape[:2]
+    rows = np.clip(np.arange(height) + dy, 0, height - 1)
+    columns = np.clip(np.arange(width) + dx, 0, width - 1)
+    return values[rows[:, None], columns]
+
+
+def pixel_centers(shape: Shape) -> tuple[Array, Array]:
+    """Columns and rows of every pixel, x and y (h, w), from the middle of the image."""
+    height, width = shape
+    y, x = np.mgrid[:height, :width].astype(np.float64)
+    return x - (width - 1) / 2, y - (height - 1) / 2
+
+
+def sample(mask: Mask, count: int) -> Whole:
+    """At most `count` places of a mask, always the same ones, as indices into the flattened mask."""
+    return np.random.default_rng(0).permutation(np.flatnonzero(mask))[:count]
+
+
+def typical(depth: Array) -> float:
+    """The median of a depth where it is above 0; infinite where it never is."""
+    usable = depth[depth > 0]
+    return float(np.median(usable)) if usable.size else np.inf

@@ -1,0 +1,73 @@
+"""``svgf-cl check``: what is wrong with frames, before they are denoised."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from svgf_cl.check import check_sequence
+from svgf_cl.cli.console import show, tracked
+from svgf_cl.display import write_image
+from svgf_cl.errors import SvgfError
+from svgf_cl.files import make_folder
+from svgf_cl.frame import Frame
+from svgf_cl.sequence import find_frames, read_sequence
+
+
+def check(
+    frames: Annotated[
+        list[Path],
+        typer.Argument(metavar="FRAMES", help="EXR files in order, or folders of frame.0000.exr and so on."),
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE", help="Also draw the fields of the last frame: .png."),
+    ] = None,
+) -> None:
+    """Look for what is wrong with the frames of a shot, before they are denoised.
+
+    Motion that points the other way, normals in view space, depth of a depth buffer, colour meant for a display: the
+    frames themselves tell, if the camera moves. Eight frames are plenty. What they cannot tell is listed as not
+    checked. Exit code 1 where anything is wrong.
+
+    \b
+    Examples:
+      svgf-cl check out/box
+      svgf-cl check shot.0100.exr shot.0101.exr shot.0102.exr shot.0103.exr -o fields.png
+    """
+    if output and output.suffix != ".png":
+        raise SvgfError(f"--output: expected a file named *.png, got {output}")
+    sources = find_frames(frames)
+    last: list[Frame] = []
+    report = check_sequence(kept(tracked(read_sequence(sources), len(sources), "checking"), last))
+    if output:
+        draw(output, last)
+    show(
+        f"{len(sources)} frames: {len(report.findings)} findings, {len(report.passed)} checks passed",
+        ("field", "severity", "found", "measured", "expected", "to do"),
+        [(f.field, f.severity, f.what, f.measured, f.expected, f.cure) for f in report.findings],
+        words=6,
+    )
+    for line in report.unknown:
+        print(line)
+    raise typer.Exit(1 if report.findings else 0)
+
+
+def kept(frames: Iterable[Frame], last: list[Frame]) -> Iterator[Frame]:
+    """Pass frames on, and keep the last two."""
+    for frame in frames:
+        last[:] = [*last[-1:], frame]
+        yield frame
+
+
+def draw(path: Path, last: list[Frame]) -> None:
+    """Write the contact sheet of the last of some frames."""
+    try:
+        from svgf_cl.check.sheet import sheet
+    except ImportError as error:
+        raise SvgfError(f"--output: drawing takes Pillow; pip install pillow ({error})") from error
+    make_folder(path.parent)
+    write_image(path, sheet(last[0], last[-1]))

@@ -1,0 +1,110 @@
+"""`check_frame`, `check_sequence` and what they report."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pyopencl as cl
+import pyopencl.array as cl_array
+import pytest
+
+from svgf_cl import Frame, FrameError, check_frame, check_sequence
+from svgf_cl.check import CHECKS, camera, depth, motion, surfaces, values
+from svgf_cl.check.check import Check
+from svgf_cl.check.finding import Finding, Unknown
+from svgf_cl.room import room_frames
+from tests.frames import noise, wall
+
+SHAPE = (180, 320)
+
+
+@pytest.fixture(scope="module")
+def room() -> list[Frame]:
+    return list(room_frames(SHAPE, 4))
+
+
+def test_each_check_is_a_finding_or_unknown_or_passed(room: list[Frame]) -> None:
+    report = check_sequence(room)
+    topics = [*{unknown.topic for unknown in report.unknown}, *report.passed]
+    assert sorted(topics) == sorted(check.topic for check in CHECKS)
+
+
+def test_a_single_frame_tells_nothing_of_motion(room: list[Frame]) -> None:
+    report = check_frame(room[0])
+    assert not report.findings
+    untold = {unknown.topic for unknown in report.unknown}
+    assert untold >= {check.topic for check in CHECKS if check.frames == 2}
+    assert depth.ENCODING.topic in report.passed
+
+
+def test_a_pair_tells_of_motion(room: list[Frame]) -> None:
+    wrong = replace(room[1], motion=room[1].motion * np.float32([-1, -1, 1]))
+    assert check_frame(wrong, room[0]).findings[0].what == "points the other way"
+    assert motion.DIRECTION.topic in check_frame(room[1], room[0]).passed
+
+
+def test_a_finding_says_all_there_is_to_say(room: list[Frame]) -> None:
+    wrong = [replace(frame, motion=frame.motion * np.float32([-1, -1, 1])) for frame in room]
+    (finding,) = check_sequence(wrong).findings
+    assert (finding.field, finding.severity, finding.cure) == ("motion", "error", "negate it")
+    assert "previous minus current" in finding.expected
+    assert any(character.isdigit() for character in finding.measured)
+    for part in (finding.field, finding.what, finding.measured, finding.expected, finding.cure):
+        assert part in str(finding)
+
+
+def test_what_relies_on_a_wrong_field_is_put_off(room: list[Frame]) -> None:
+    wrong = [replace(frame, motion=frame.motion * np.float32([-1, -1, 1])) for frame in room]
+    untold = {unknown.topic: unknown.why for unknown in check_sequence(wrong).unknown}
+    assert untold[surfaces.NAMES.topic] == "mend motion first"
+
+
+def test_a_warning_puts_nothing_off() -> None:
+    def judge(total: np.ndarray) -> list[Finding]:
+        return [Finding("albedo", "odd", "1", "nothing", "warning")]
+
+    check = Check("topic", lambda view: np.ones(1), judge, trusts=("albedo",))
+    assert check.verdict(np.ones(1), set(), 1) == judge(np.ones(1))
+    assert check.verdict(np.ones(1), {"albedo"}, 1) == [Unknown("topic", "mend albedo first")]
+
+
+@pytest.mark.parametrize("field", ["normal", "depth", "motion"])
+def test_a_missing_field_is_named(room: list[Frame], field: str) -> None:
+    with pytest.raises(FrameError, match=field):
+        check_frame(replace(room[0], **{field: None}))
+
+
+def test_a_frame_of_another_size_is_refused(room: list[Frame]) -> None:
+    with pytest.raises(FrameError, match=r"\(9, 7, 3\)"):
+        check_sequence([room[0], wall((9, 7))])
+
+
+def test_frames_on_a_device_are_as_good(room: list[Frame], queue: cl.CommandQueue) -> None:
+    there = [
+        Frame(**{name: cl_array.to_device(queue, value) for name, value in frame.present().items()}) for frame in room
+    ]
+    assert check_sequence(there) == check_sequence(room)
+
+
+def test_frames_without_optional_fields_are_checked(room: list[Frame]) -> None:
+    bare = [Frame(color=f.color, normal=f.normal, depth=f.depth, motion=f.motion[..., :2].copy()) for f in room]
+    report = check_sequence(bare)
+    assert not report.findings
+    assert {surfaces.NAMES.topic, values.ALBEDO.topic} <= {unknown.topic for unknown in report.unknown}
+    assert camera.JITTER.topic in report.passed
+
+
+def test_parts_stand_in_for_color() -> None:
+    frames = [replace(frame, color=None) for frame in room_frames(SHAPE, 3, signals=2)]
+    assert not check_sequence(frames).findings
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 9), (9, 1), (2, 2), (7, 9)])
+def test_tiny_frames_raise_no_alarm(shape: tuple[int, int]) -> None:
+    assert not check_sequence([wall(shape, color=noise(shape=shape))] * 2).findings
+
+
+def test_frames_without_any_surface_raise_no_alarm() -> None:
+    sky = wall(color=noise(), normal=0.0, depth=np.inf, albedo=1.0, id=0)
+    assert not check_sequence([sky] * 2).findings
