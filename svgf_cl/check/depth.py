@@ -101,7 +101,7 @@ def origin(depth: Array) -> float:
 
 
 def judge(sums: Array) -> list[Finding | Unknown]:
-    """A mistake is there where it has many votes, and hardly any against it."""
+    """A mistake is there where it has many votes, and hardly any against it; with many either way nothing is known."""
     wins, losses = sums
     *plain, last = (wins >= ENOUGH) & (wins > 4 * losses)
     best = int(np.argmax(np.where(plain, wins[:-1], 0))) if any(plain) else len(wins) - 1
@@ -110,7 +110,8 @@ def judge(sums: Array) -> list[Finding | Unknown]:
         return [
             Finding("depth", what, f"{wins[best]:g} of {wins[best] + losses[best]:g} planes are plane only if so", cure)
         ]
-    if min(losses[0], losses[3:-1].max()) >= ENOUGH:
+    doubtful = (wins >= ENOUGH) & (4 * wins >= losses)
+    if min(losses[0], losses[3:-1].max()) >= ENOUGH and not doubtful[:-1].any():
         return []
     return [Unknown(ENCODING.topic, "too few slanted planes, or depth too coarse")]
 
