@@ -45,12 +45,12 @@ def check(
     report = check_sequence(kept(tracked(read_sequence(sources), len(sources), "checking"), last))
     if output:
         draw(output, last)
-    show(
-        f"{len(sources)} frames: {len(report.findings)} findings, {len(report.passed)} checks passed",
-        ("field", "severity", "found", "measured", "expected", "to do"),
-        [(f.field, f.severity, f.what, f.measured, f.expected, f.cure) for f in report.findings],
-        words=6,
-    )
+    title = f"{len(sources)} frames: {len(report.findings)} findings, {len(report.passed)} checks passed"
+    if report.findings:
+        rows = [(f.field, f.severity, f.what, f.measured, f.expected, f.cure) for f in report.findings]
+        show(title, ("field", "severity", "found", "measured", "expected", "to do"), rows, words=6)
+    else:
+        print(title)
     for line in report.unknown:
         print(line)
     raise typer.Exit(1 if report.findings else 0)
