@@ -130,6 +130,8 @@ def test_an_unknown_stage(queue):
 
 @pytest.mark.parametrize("kind", ["binary", "info"])
 def test_a_damaged_cache_of_pyopencl_is_no_reason_not_to_build(kind, stage, queue, tmp_path, monkeypatch):
+    if queue.device.platform.name == "rusticl":
+        pytest.skip("rusticl 22.3 aborts on a damaged binary")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr("pyopencl.characterize.has_src_build_cache", lambda device: False)  # PoCL's driver has its own
     name = stage(SQUARE)
