@@ -23,4 +23,5 @@ def test_counts_as_zero(variant: Variant, name: str, spoil: Spoil, value: float)
     for got, expected in zip(
         variant.pictures([first, denormal, *later]), variant.pictures([first, zero, *later]), strict=True
     ):
-        assert_allclose(got, expected, rtol=0, atol=2 * DENORMAL)
+        # rusticl keeps denormals, so the dimmest light is rounded otherwise.
+        assert_allclose(got, expected, rtol=1e-6, atol=2 * DENORMAL)
