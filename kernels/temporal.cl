@@ -160,8 +160,8 @@ INLINE History select_history(intv mask, History yes, History no) {
 }
 
 // Mean over the 2x2 footprint, with bilinear weights.
-INLINE History footprint(const int4 size, Expected e, Box box, float normal_threshold, __global const float * guide,
-                         __global const light_t * history, __global const light_t * moments) {
+INLINE History footprint(const int4 size, Expected e, Box box, float normal_threshold, __global const float *guide,
+                         __global const light_t *history, __global const light_t *moments) {
     History h = no_history();
     for (int j = 0; j < box.rows; ++j) {
         for (int i = 0; i < box.columns; ++i) {
@@ -176,8 +176,8 @@ INLINE History footprint(const int4 size, Expected e, Box box, float normal_thre
 
 // Mean over the nine pixels around the nearest one, which lies (nx, ny) off the footprint's top left.
 INLINE History surroundings(const int4 size, Expected e, floatv nx, floatv ny, Box box, float normal_threshold,
-                            __global const float * guide, __global const light_t * history,
-                            __global const light_t * moments) {
+                            __global const float *guide, __global const light_t *history,
+                            __global const light_t *moments) {
     History h = no_history();
     for (int j = 0; j < box.rows; ++j) {
         for (int i = 0; i < box.columns; ++i) {

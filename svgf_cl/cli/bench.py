@@ -10,7 +10,7 @@ import typer
 
 from svgf_cl.cli import bench_tracer
 from svgf_cl.cli.console import progress_bar, show
-from svgf_cl.cli.options import SettingTexts, parse_settings, parse_size
+from svgf_cl.cli.options import Earlier, SettingTexts, parse_settings, parse_size
 from svgf_cl.errors import SvgfError
 from svgf_cl.files import make_folder
 
@@ -29,10 +29,7 @@ def bench(
         list[str], typer.Option(metavar="WxH", help="Size to time; may be repeated. By default 320x180 to 3840x2160.")
     ] = [],  # noqa: B006  # never changed; typer wants the default spelled here
     seconds: Annotated[float, typer.Option(metavar="S", min=0.0, help="Time for each denoiser, about.")] = 1.0,
-    old: Annotated[
-        Path | None,
-        typer.Option("--compare", metavar="OLD.json", help="Show how times differ from those of an earlier run."),
-    ] = None,
+    old: Earlier = None,
     output: Annotated[
         Path | None,
         typer.Option(

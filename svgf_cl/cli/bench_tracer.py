@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from svgf_cl.cli.console import progress_bar, show
-from svgf_cl.cli.options import Size, parse_size
+from svgf_cl.cli.options import Earlier, Size, parse_size
 from svgf_cl.cli.render import SCENE_HELP
 from svgf_cl.cli.scenes import require_tracer
 from svgf_cl.errors import SvgfError
@@ -19,10 +19,7 @@ def tracer(
     scene: Annotated[str, typer.Argument(metavar="[SCENE]", help=SCENE_HELP)] = "cornell",
     size: Size = "1280x720",
     rounds: Annotated[int, typer.Option(metavar="N", min=1, help="How often everything is timed, in turn.")] = 9,
-    old: Annotated[
-        Path | None,
-        typer.Option("--compare", metavar="OLD.json", help="Show how times differ from those of an earlier run."),
-    ] = None,
+    old: Earlier = None,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="DIR", help="Also write results.json and split.png there."),

@@ -41,6 +41,10 @@ Exposure = Annotated[
     float,
     typer.Option(metavar="STOPS", help="Brighten what is shown or measured as shown.", callback=check_exposure),
 ]
+Earlier = Annotated[
+    Path | None,
+    typer.Option("--compare", metavar="OLD.json", help="Show how times differ from those of an earlier run."),
+]
 Size = Annotated[str, typer.Option(metavar="WxH", help="Width and height in pixels.")]
 
 
