@@ -25,9 +25,9 @@ from svgf_cl.bench.suite import Suite
 from svgf_cl.bench.tracing import picture
 from svgf_cl.bench.tracing import suite as tracing
 from svgf_cl.cli.console import progress_bar, show
+from svgf_cl.compare.metrics import require_flip
 from svgf_cl.errors import SvgfError
-from svgf_cl.files import make_folder
-from svgf_cl.metrics import require_flip
+from svgf_cl.io.atomic import make_folder
 
 RACE_ROUNDS = 20
 VARIANT_ROUNDS = 10  # half as many as by itself: all has to be done in ten minutes

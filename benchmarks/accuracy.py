@@ -19,10 +19,11 @@ import numpy as np
 
 from benchmarks import steady_light
 from benchmarks.implementations import Environment, environments
-from svgf_cl import Frame, Settings, devices
-from svgf_cl.accuracy import DECISION, SCALE_SHARE, Deviation, deviations, worst
+from svgf_cl import Frame, Settings
 from svgf_cl.bench import error_to_oracle
-from svgf_cl.files import written_whole
+from svgf_cl.device import devices
+from svgf_cl.io.atomic import written_whole
+from svgf_cl.oracle.accuracy import DECISION, SCALE_SHARE, Deviation, deviations, worst
 from tracer import Shot, builtin_scene, render_sequence
 
 SHAPE = (36, 64)
@@ -36,7 +37,7 @@ INTRODUCTION = f"""# Accuracy
 Made by `make docs` (`python -m benchmarks.accuracy docs/accuracy.md`); do not edit. `make test-all` prints it for the
 machine it runs on.
 
-Every kernel is given its actual float32 input and held against the same function of `svgf_cl/reference.py` in
+Every kernel is given its actual float32 input and held against the same function of `svgf_cl/oracle/svgf.py` in
 float64, on {FRAMES} frames of {SHAPE[1]}x{SHAPE[0]} each of two sequences: the built-in Cornell box (1 sample, moving
 camera), and unrelated numbers in every field, with misses, ids and motion of several pixels. Direct and indirect light
 apart, TAA on. The largest error of any pixel of any result of a kernel:

@@ -13,8 +13,8 @@ from benchmarks.mistakes import MISTAKES, ROOM, Mistake, Taken, good_sequence
 from svgf_cl import check_sequence
 from svgf_cl.check import CHECKS, Report
 from svgf_cl.cli.console import tracked
-from svgf_cl.files import written_whole
 from svgf_cl.frame import extent
+from svgf_cl.io.atomic import written_whole
 from tracer import BUILTIN
 
 TARGET = Path("docs/checking_inputs.md")

@@ -12,7 +12,7 @@ from benchmarks.measurements import Quality, Result
 from benchmarks.presentation import MARK, Column, markdown, oracle_column, plot, quality_columns, table
 from svgf_cl.bench.report import Section, inline_png
 from svgf_cl.bench.tables import Table
-from svgf_cl.files import written_whole
+from svgf_cl.io.atomic import written_whole
 
 TITLE = "Speed against error"
 

@@ -8,8 +8,8 @@ from functools import cached_property
 
 import tracer
 from svgf_cl.cli.scenes import open_scene
-from svgf_cl.display import Linear
 from svgf_cl.frame import Frame, Shape
+from svgf_cl.io.display import Linear
 from tracer.references import chunks
 
 

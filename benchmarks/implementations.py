@@ -11,7 +11,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from svgf_cl import devices, intel_runtime
+from svgf_cl.device import devices, intel_runtime
 
 # By the name in tables: the platform's own name, what the OpenCL loader is to load, what else the driver asks for.
 # Oclgrind's package registers it nowhere; `scripts/set_up implementations` installs them all.

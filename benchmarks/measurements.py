@@ -14,10 +14,10 @@ from benchmarks.variants import Variant
 from svgf_cl import Denoiser, Frame
 from svgf_cl.bench import error_to_oracle
 from svgf_cl.bench.rig import WARM_UP
-from svgf_cl.display import Linear, display
+from svgf_cl.compare.metrics import flip, psnr, relmse, temporal_error
 from svgf_cl.frame import Shape
-from svgf_cl.metrics import flip, psnr, relmse, temporal_error
-from svgf_cl.room import PERIOD, room_frames
+from svgf_cl.io.display import Linear, display
+from svgf_cl.io.synthetic import PERIOD, room_frames
 
 # Frames a variant computes at each of its turns: the first finds caches full of another variant's planes.
 UNTIMED, TIMED = 1, 2
@@ -27,7 +27,7 @@ Advance = Callable[[], None]
 
 @dataclass(frozen=True)
 class Quality:
-    """Errors of a sequence's two judged frames, as `svgf_cl.metrics` defines them; means over the two."""
+    """Errors of a sequence's two judged frames, as `svgf_cl.compare.metrics` defines them; means over the two."""
 
     psnr: float
     relmse: float

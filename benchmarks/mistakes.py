@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from svgf_cl import room
 from svgf_cl.check import Report, alignment, camera, depth, motion, shading, surfaces, values
 from svgf_cl.check.check import Check
 from svgf_cl.cli.scenes import open_scene
-from svgf_cl.display import display
 from svgf_cl.frame import Frame, Shape
+from svgf_cl.io import synthetic as room
+from svgf_cl.io.display import display
 from tracer import BUILTIN, Camera, CameraPath, Shot, render_frame
 from tracer.camera import vector
 from tracer.sampling import pixel_jitter

@@ -14,7 +14,7 @@ from svgf_cl import Denoiser
 from svgf_cl.bench.results import Result
 from svgf_cl.bench.rig import EVENT, HOST
 from svgf_cl.frame import Shape, extent
-from svgf_cl.room import PERIOD, room_frames
+from svgf_cl.io.synthetic import PERIOD, room_frames
 
 # Seconds of each round, by denoiser and clock.
 Times = Mapping[tuple[str, str], Sequence[float]]

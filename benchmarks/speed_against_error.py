@@ -12,7 +12,7 @@ Error, two kinds:
   renderer is used; without TAA much of the error is aliasing of edges, which no filter of light can remove. "centre":
   all rays through pixel centres, the truth's too: the filter's own error, without TAA, which needs jitter.
 
-How the metrics are defined: `svgf_cl.metrics`. The truth has noise of its own, given below the table.
+How the metrics are defined: `svgf_cl.compare.metrics`. The truth has noise of its own, given below the table.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from benchmarks.footage import FOOTAGE, Footage
 from benchmarks.measurements import measure, steps
 from benchmarks.provenance import provenance
 from benchmarks.variants import VARIANTS
-from svgf_cl import devices
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import parse_rgb, parse_size
 from svgf_cl.cli.render import CAMERA_HELP
-from svgf_cl.files import make_folder
+from svgf_cl.compare.metrics import require_flip
+from svgf_cl.device import devices
 from svgf_cl.frame import extent
-from svgf_cl.metrics import require_flip
+from svgf_cl.io.atomic import make_folder
 from tracer import Camera
 from tracer.references import CHUNK
 

@@ -9,8 +9,8 @@ import pyopencl as cl
 from numpy.typing import NDArray
 
 from svgf_cl import Denoiser, Frame, Settings
-from svgf_cl.reference import Reference
-from svgf_cl.reference_taps import REC709
+from svgf_cl.oracle.svgf import Reference
+from svgf_cl.oracle.taps import REC709
 
 SHAPE = (36, 64)
 FRAMES = 24

@@ -35,17 +35,18 @@ from benchmarks.presentation import markdown
 from benchmarks.provenance import provenance
 from benchmarks.race import Times, race, results
 from benchmarks.versus_tables import error_table, ratio_table, time_table
-from svgf_cl import Denoiser, Settings, devices
+from svgf_cl import Denoiser, Settings
 from svgf_cl.bench.bars import bar_table
 from svgf_cl.bench.report import Section
 from svgf_cl.bench.results import Result
 from svgf_cl.bench.tables import Table
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import SettingTexts, parse_settings, parse_size
-from svgf_cl.display import Linear
-from svgf_cl.files import written_whole
+from svgf_cl.compare.metrics import require_flip
+from svgf_cl.device import devices
 from svgf_cl.frame import Shape, extent
-from svgf_cl.metrics import require_flip
+from svgf_cl.io.atomic import written_whole
+from svgf_cl.io.display import Linear
 
 AREA, _ = FOOTAGE
 

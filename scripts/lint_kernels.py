@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 
-from svgf_cl import programs
+from svgf_cl.device import programs
 
 MACROS = {
     "VW": (1, 4, 8, 16),

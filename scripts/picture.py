@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from svgf_cl.display import to_bytes
-from svgf_cl.files import written_whole
-from svgf_cl.sequence import frame_path, read_picture
+from svgf_cl.io.atomic import written_whole
+from svgf_cl.io.display import to_bytes
+from svgf_cl.io.frames import frame_path, read_picture
 
 DEMO = Path("out/demo")
 TARGET = Path("docs/demo.png")

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from svgf_cl.files import written_whole
+from svgf_cl.io.atomic import written_whole
 from tracer.description import SceneDescription
 
 TARGET = Path("docs/scene_description.md")

@@ -2,10 +2,10 @@
 
 from svgf_cl.check import check_frame, check_sequence
 from svgf_cl.denoiser import Denoiser
+from svgf_cl.device.tuning import Tuning
 from svgf_cl.errors import DeviceError, FrameError, SequenceError, SettingsError, SvgfError
 from svgf_cl.frame import Frame
 from svgf_cl.settings import Settings
-from svgf_cl.tuning import Tuning
 
 __all__ = [
     "Denoiser",

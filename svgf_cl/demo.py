@@ -21,13 +21,12 @@ from pathlib import Path
 import numpy as np
 
 import tracer
+from svgf_cl.compare.metrics import Metrics, measure
 from svgf_cl.denoiser import Denoiser
-from svgf_cl.display import Bytes, to_bytes, write_image
-from svgf_cl.files import make_folder
 from svgf_cl.frame import Frame, Shape
-from svgf_cl.metrics import Metrics, measure
-from svgf_cl.pictures import still, write_preview
-from svgf_cl.sequence import (
+from svgf_cl.io.atomic import make_folder
+from svgf_cl.io.display import Bytes, to_bytes, write_image
+from svgf_cl.io.frames import (
     check_leftovers,
     frame_path,
     is_picture,
@@ -36,6 +35,7 @@ from svgf_cl.sequence import (
     write_frame,
     write_picture,
 )
+from svgf_cl.io.panels import still, write_preview
 from svgf_cl.settings import Settings
 from tracer.references import CHUNK, chunks
 

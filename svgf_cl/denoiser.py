@@ -1,4 +1,4 @@
-"""`Denoiser`: the pass table of `svgf_cl.passes` put to work on a device."""
+"""`Denoiser`: the pass table of `svgf_cl.filters.pipeline` put to work on a device."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ import numpy as np
 import pyopencl as cl
 import pyopencl.array as cl_array
 
-from svgf_cl import programs
-from svgf_cl.arguments import check_queue, check_settings, check_shape, check_tuning, held, layout_of
-from svgf_cl.buffers import Buffers
+from svgf_cl.device import programs
+from svgf_cl.device.arguments import check_queue, check_settings, check_shape, check_tuning, held, layout_of
+from svgf_cl.device.buffers import Buffers
+from svgf_cl.device.events import pending
+from svgf_cl.device.launch import Grid, Launch
+from svgf_cl.device.memory_plan import memory_slots
+from svgf_cl.device.opencl_errors import allocate, opencl_errors
+from svgf_cl.device.tuning import Tuning
+from svgf_cl.device.user_arrays import UserArrays, check_out
 from svgf_cl.errors import FrameError, SvgfError, shown
-from svgf_cl.failures import allocate, opencl_errors
+from svgf_cl.filters.formats import stored
+from svgf_cl.filters.pipeline import OUT, Inputs, Pass, pipeline
+from svgf_cl.filters.stages import StageView, stage_views
 from svgf_cl.frame import Frame, Shape, UserArray
-from svgf_cl.launch import Grid, Launch
-from svgf_cl.memory import memory_slots
-from svgf_cl.passes import OUT, Inputs, Pass, pipeline
 from svgf_cl.settings import Settings
-from svgf_cl.stages import StageView, stage_views
-from svgf_cl.storage import stored
-from svgf_cl.tuning import Tuning
-from svgf_cl.user_arrays import UserArrays, check_out
-from svgf_cl.waiting import pending
 
 # What to do after an error of the device.
 NOT_BEGUN = "the frame was not begun, so the next one goes on from the last; if this stays, make a new Denoiser"
@@ -62,7 +62,7 @@ class Denoiser:
     settings : Settings, optional
         Parameters of the filter.
     queue : pyopencl.CommandQueue, optional
-        In-order queue to work on; by default one on the fastest working device (`svgf_cl.devices.default_queue`).
+        In-order queue to work on; by default one on the fastest working device (`svgf_cl.device.devices.default_queue`).
     keep_stages : bool
         Copy every stage aside, so that `stage` can read all of them; by default some make room for later ones.
     tuning : Tuning, optional

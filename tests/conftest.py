@@ -8,7 +8,8 @@ import pyopencl as cl
 import pytest
 
 import tracer  # noqa: F401  # now: what it has compiled lies in the user's own cache folder, not in those below
-from svgf_cl import cache, devices, tuning
+from svgf_cl.device import devices, tuning
+from svgf_cl.io import cache
 
 
 @pytest.fixture(scope="session", autouse=True)

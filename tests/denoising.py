@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from svgf_cl import Denoiser, Frame, Settings, Tuning, tuning
+from svgf_cl import Denoiser, Frame, Settings, Tuning
+from svgf_cl.device import tuning
 
 
 def feed(*frames: Frame, **chosen: Any) -> tuple[np.ndarray, Denoiser]:

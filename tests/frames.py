@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from svgf_cl import devices
+from svgf_cl.device import devices
 from svgf_cl.frame import CHANNELS, Frame, Shape
 from tracer import Shot, builtin_scene, render_sequence
 

@@ -14,7 +14,8 @@ import numpy as np
 import pyopencl as cl
 import pytest
 
-from svgf_cl import Tuning, tuning, user_arrays
+from svgf_cl import Tuning
+from svgf_cl.device import tuning, user_arrays
 
 CHECKS = ("OCLGRIND_DATA_RACES", "OCLGRIND_UNIFORM_WRITES", "OCLGRIND_UNINITIALIZED", "OCLGRIND_CHECK_API")
 os.environ.update(dict.fromkeys(CHECKS, "1"))

@@ -9,7 +9,7 @@ from pathlib import Path
 import pyopencl as cl
 import pytest
 
-from svgf_cl.devices import SIMULATOR
+from svgf_cl.device.devices import SIMULATOR
 from tests.oclgrind import findings
 
 ROOT = Path(__file__).parents[1]
@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[1]
 TEST = """
 import numpy as np
 import pyopencl as cl
-from svgf_cl import devices
+from svgf_cl.device import devices
 
 def test_kernel(queue=devices.default_queue()):
     a, b = (cl.Buffer(queue.context, cl.mem_flags.READ_WRITE, 16) for _ in range(2))

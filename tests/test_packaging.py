@@ -15,7 +15,8 @@ ROOT = Path(__file__).parents[1]
 
 USE = """
 import sys, svgf_cl
-from svgf_cl import devices, programs
+from svgf_cl.device import devices
+from svgf_cl.device import programs
 assert svgf_cl.__file__.startswith(sys.argv[1]), svgf_cl.__file__
 queue = devices.default_queue()
 macros = dict(VW=4, SIGNALS=1, MOTION=2, HAS_ALBEDO=0, HAS_EMISSION=0, HAS_ID=0, TAA=0, FAST=0, RADIUS=2)

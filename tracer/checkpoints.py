@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from svgf_cl.files import make_folder, written_whole
+from svgf_cl.io.atomic import make_folder, written_whole
 
 from .estimate import Estimate, Step
 from .vectors import Float32

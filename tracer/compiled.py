@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import numba
 
-from svgf_cl.cache import cache_folder
+from svgf_cl.io.cache import cache_folder
 
 Function = TypeVar("Function", bound=Callable[..., object])
 

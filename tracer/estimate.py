@@ -11,7 +11,7 @@ import numpy as np
 from .compiled import compiled
 from .vectors import Float32, Float64
 
-# Squared radiance below which errors count as absolute: as in `svgf_cl.metrics.relmse`.
+# Squared radiance below which errors count as absolute: as in `svgf_cl.compare.metrics.relmse`.
 DARK = 0.01
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from svgf_cl.errors import SequenceError
-from svgf_cl.exr import read_pixels
+from svgf_cl.io.exr import read_pixels
 
 from .errors import SceneError
 from .sky import Environment

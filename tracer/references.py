@@ -14,10 +14,10 @@ from itertools import count
 from math import ceil, inf
 from pathlib import Path
 
-from svgf_cl import cache
-from svgf_cl.exr import write_channels
 from svgf_cl.frame import Frame
-from svgf_cl.sequence import channels_of
+from svgf_cl.io import cache
+from svgf_cl.io.exr import write_channels
+from svgf_cl.io.frames import channels_of
 
 from .checkpoints import Checkpoints
 from .errors import SceneError

@@ -12,8 +12,8 @@ from svgf_cl.bench.cases import USUAL_SHAPE
 from svgf_cl.bench.results import Result
 from svgf_cl.bench.rig import EVENT, HOST
 from svgf_cl.bench.tables import Table
-from svgf_cl.devices import POCL
-from svgf_cl.intel_runtime import PLATFORM as INTEL
+from svgf_cl.device.devices import POCL
+from svgf_cl.device.intel_runtime import PLATFORM as INTEL
 
 Results = Sequence[Result]
 

@@ -14,8 +14,8 @@ import pyopencl as cl
 
 from svgf_cl.bench.cores import core_counts
 from svgf_cl.bench.cost import Cost, cost
+from svgf_cl.filters.pipeline import Inputs, Pass, pipeline
 from svgf_cl.frame import Shape, extent
-from svgf_cl.passes import Inputs, Pass, pipeline
 from svgf_cl.settings import RANGES, Settings
 
 SHAPES: tuple[Shape, ...] = ((180, 320), (720, 1280), (1080, 1920), (2160, 3840))

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pyopencl as cl
 
-from svgf_cl.programs import OPTIONS
-from svgf_cl.tuning import best_tuning
+from svgf_cl.device.programs import OPTIONS
+from svgf_cl.device.tuning import best_tuning
 
 # Source and target together: from a core's own cache to far out of every cache.
 WORKING_SETS = tuple(2**power for power in range(16, 30))

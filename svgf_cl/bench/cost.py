@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from svgf_cl.bench.loads import Loads, loads
 from svgf_cl.bench.traffic import bytes_moved
-from svgf_cl.passes import Inputs, Pass
+from svgf_cl.filters.pipeline import Inputs, Pass
 from svgf_cl.settings import Settings
 
 DOT = 5  # x x' + y y' + z z'; a luminance too

@@ -6,8 +6,8 @@ import numpy as np
 import pyopencl as cl
 
 from svgf_cl.denoiser import Denoiser
-from svgf_cl.reference import Reference
-from svgf_cl.room import room_frames
+from svgf_cl.io.synthetic import room_frames
+from svgf_cl.oracle.svgf import Reference
 from svgf_cl.settings import Settings
 
 ERROR_SHAPE = (90, 160)  # the oracle is slow

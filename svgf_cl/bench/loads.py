@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from svgf_cl.bench.traffic import FLOAT, bytes_moved, light_bytes, normal_bytes
-from svgf_cl.passes import Inputs, Pass
-from svgf_cl.planes import WIDEST_VECTOR
+from svgf_cl.device.layout import WIDEST_VECTOR
+from svgf_cl.filters.pipeline import Inputs, Pass
 from svgf_cl.settings import Settings
 
 # Pixels (dx, dy) off a work-item's own.

@@ -20,7 +20,7 @@ from svgf_cl.bench.bars import bar_table
 from svgf_cl.bench.compare import comparison, differences
 from svgf_cl.bench.results import Run
 from svgf_cl.bench.tables import Table, device_table, memory_table, stage_table
-from svgf_cl.files import written_whole
+from svgf_cl.io.atomic import written_whole
 
 # Text and lines take the page's own colour, so that they can be read on dark and on light ground.
 INK = "#010203"

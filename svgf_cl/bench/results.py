@@ -18,7 +18,7 @@ from pytest_benchmark.stats import Stats
 from svgf_cl import __version__
 from svgf_cl.bench.ceilings import Ceilings
 from svgf_cl.errors import SvgfError
-from svgf_cl.files import read_json, written_whole
+from svgf_cl.io.atomic import read_json, written_whole
 
 
 @dataclass(frozen=True)

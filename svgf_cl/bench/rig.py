@@ -11,12 +11,12 @@ import numpy as np
 import pyopencl as cl
 import pyopencl.array as cl_array
 
-from svgf_cl.buffers import Buffers
 from svgf_cl.denoiser import Denoiser
+from svgf_cl.device.buffers import Buffers
+from svgf_cl.device.launch import Launch
+from svgf_cl.filters.pipeline import Inputs
 from svgf_cl.frame import Frame, Shape
-from svgf_cl.launch import Launch
-from svgf_cl.passes import Inputs
-from svgf_cl.room import room_frame
+from svgf_cl.io.synthetic import room_frame
 from svgf_cl.settings import Settings
 
 WARM_UP = 5  # frames: kernels are built, memory is touched, history is long enough for the temporal variance

@@ -8,7 +8,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from svgf_cl.devices import VARIABLE, DeviceReport
+from svgf_cl.device.devices import VARIABLE, DeviceReport
 from svgf_cl.errors import DeviceError
 from svgf_cl.frame import Shape
 

@@ -10,7 +10,6 @@ from typing import Any
 
 import pyopencl as cl
 
-from svgf_cl import devices
 from svgf_cl.bench.cases import STARTS, USUAL_SHAPE, Case
 from svgf_cl.bench.ceilings import ALIGNED, OFFSET, CeilingBench, Ceilings
 from svgf_cl.bench.cores import confined
@@ -19,11 +18,12 @@ from svgf_cl.bench.results import DeviceRecord, Result
 from svgf_cl.bench.rig import EVENT, HOST, Rig, there_and_back
 from svgf_cl.bench.roofline import BINDS, Bound
 from svgf_cl.bench.startup import first_frames
-from svgf_cl.devices import DeviceReport
+from svgf_cl.device import devices
+from svgf_cl.device.devices import DeviceReport
+from svgf_cl.device.tuning import best_tuning
 from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.settings import Settings
-from svgf_cl.tuning import best_tuning
 
 CEILING_SAMPLES = 3  # of each, every time
 

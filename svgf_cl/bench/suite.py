@@ -10,11 +10,11 @@ from dataclasses import dataclass, field
 from itertools import chain, zip_longest
 from typing import TypeVar
 
-from svgf_cl import devices
 from svgf_cl.bench.cases import SHAPES, STARTS, USUAL_SHAPE, Case, cases
 from svgf_cl.bench.results import Run
 from svgf_cl.bench.station import Station
-from svgf_cl.devices import DeviceReport
+from svgf_cl.device import devices
+from svgf_cl.device.devices import DeviceReport
 from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Shape
 from svgf_cl.settings import Settings

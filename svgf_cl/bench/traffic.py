@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from svgf_cl.filters.formats import LIGHT, NORMALS
+from svgf_cl.filters.pipeline import OUT, Inputs, Pass, kind_of
 from svgf_cl.frame import CHANNELS
-from svgf_cl.passes import OUT, Inputs, Pass, kind_of
 from svgf_cl.settings import Settings
-from svgf_cl.storage import LIGHT, NORMALS
 
 FLOAT = 4  # bytes
 HALF = 2

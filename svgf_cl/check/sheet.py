@@ -6,9 +6,9 @@ import numpy as np
 
 from svgf_cl.check.motion import bilinear, features
 from svgf_cl.check.view import Array, View
-from svgf_cl.display import Bytes, automatic_exposure, to_bytes
 from svgf_cl.frame import Frame
-from svgf_cl.pictures import contact_sheet
+from svgf_cl.io.display import Bytes, automatic_exposure, to_bytes
+from svgf_cl.io.panels import contact_sheet
 
 
 def sheet(before: Frame, now: Frame) -> Bytes:

@@ -12,7 +12,7 @@ from svgf_cl.cli import bench_tracer
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import Earlier, SettingTexts, parse_settings, parse_size
 from svgf_cl.errors import SvgfError
-from svgf_cl.files import make_folder
+from svgf_cl.io.atomic import make_folder
 
 # Plain help, as in `svgf_cl.cli`.
 app = typer.Typer(rich_markup_mode=None, add_completion=False)

@@ -12,7 +12,7 @@ from svgf_cl.cli.options import Earlier, Size, parse_size
 from svgf_cl.cli.render import SCENE_HELP
 from svgf_cl.cli.scenes import require_tracer
 from svgf_cl.errors import SvgfError
-from svgf_cl.files import make_folder
+from svgf_cl.io.atomic import make_folder
 
 
 def tracer(

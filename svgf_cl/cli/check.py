@@ -10,11 +10,11 @@ import typer
 
 from svgf_cl.check import check_sequence
 from svgf_cl.cli.console import show, tracked
-from svgf_cl.display import write_image
 from svgf_cl.errors import SvgfError
-from svgf_cl.files import make_folder
 from svgf_cl.frame import Frame
-from svgf_cl.sequence import find_frames, read_sequence
+from svgf_cl.io.atomic import make_folder
+from svgf_cl.io.display import write_image
+from svgf_cl.io.frames import find_frames, read_sequence
 
 
 def check(

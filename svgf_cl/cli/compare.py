@@ -9,11 +9,11 @@ import typer
 
 from svgf_cl.cli.console import show, tracked
 from svgf_cl.cli.options import Exposure, check_threshold
+from svgf_cl.compare.metrics import Metrics, mean, measure
 from svgf_cl.errors import SequenceError
-from svgf_cl.files import require
 from svgf_cl.frame import extent
-from svgf_cl.metrics import Metrics, mean, measure
-from svgf_cl.sequence import find_numbered, frame_number, read_picture
+from svgf_cl.io.atomic import require
+from svgf_cl.io.frames import find_numbered, frame_number, read_picture
 
 
 def compare(

@@ -11,10 +11,10 @@ import typer
 from svgf_cl.cli.console import progress_bar, show, show_times, tracked
 from svgf_cl.cli.options import MAX_FRAMES, Output, Size, parse_size
 from svgf_cl.cli.scenes import require_tracer
+from svgf_cl.compare.metrics import SSIM_WINDOW, Metrics, require_ssim
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.errors import SvgfError
-from svgf_cl.files import make_folder
-from svgf_cl.metrics import SSIM_WINDOW, Metrics, require_ssim
+from svgf_cl.io.atomic import make_folder
 
 
 def demo(

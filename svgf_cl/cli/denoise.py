@@ -14,10 +14,10 @@ import typer
 from svgf_cl.cli.console import kept_of, show_times, tracked
 from svgf_cl.cli.options import Exposure, Output, SettingTexts, parse_settings
 from svgf_cl.denoiser import Denoiser
-from svgf_cl.display import to_bytes, write_image
 from svgf_cl.errors import SequenceError
-from svgf_cl.files import make_folder
-from svgf_cl.sequence import check_leftovers, find_frames, is_picture, read_sequence, write_picture
+from svgf_cl.io.atomic import make_folder
+from svgf_cl.io.display import to_bytes, write_image
+from svgf_cl.io.frames import check_leftovers, find_frames, is_picture, read_sequence, write_picture
 from svgf_cl.settings import Settings
 
 

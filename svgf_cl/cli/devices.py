@@ -8,8 +8,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from svgf_cl.devices import DeviceReport, choose, list_devices
-from svgf_cl.tuning import stored_tuning
+from svgf_cl.device.devices import DeviceReport, choose, list_devices
+from svgf_cl.device.tuning import stored_tuning
 
 
 def devices() -> None:

@@ -20,10 +20,10 @@ from rich.text import Text
 from svgf_cl.cli.console import WIDE, tracked
 from svgf_cl.cli.options import Exposure, Size, parse_size
 from svgf_cl.cli.scenes import open_scene, read_sky, require_tracer
-from svgf_cl.display import Bytes, automatic_exposure, to_bytes, write_image
 from svgf_cl.errors import SvgfError
-from svgf_cl.files import make_folder
 from svgf_cl.frame import Shape
+from svgf_cl.io.atomic import make_folder
+from svgf_cl.io.display import Bytes, automatic_exposure, to_bytes, write_image
 
 # In a terminal, (height, width); two pixels to a character.
 THUMBNAIL = (18, 32)
@@ -63,7 +63,7 @@ def scenes(
       svgf-cl scenes ../shared/scenes/sponza ../shared/scenes/fox/Fox.glb --sky 1,1,1 --size 640x360 -o all.webp
     """
     require_tracer()
-    from svgf_cl.pictures import contact_sheet
+    from svgf_cl.io.panels import contact_sheet
 
     shape, light = parse_size(size), read_sky(sky) if sky else None
     entries = [*(Entry(name) for name in others), *built_in()]

@@ -12,8 +12,8 @@ import typer
 from svgf_cl.cli.console import kept_of, share_bar, tracked
 from svgf_cl.cli.options import MAX_FRAMES, Output, Size, parse_size
 from svgf_cl.cli.scenes import open_scene, read_sky, require_tracer
-from svgf_cl.files import make_folder
-from svgf_cl.sequence import check_leftovers, frame_path, kept_frame, write_frame
+from svgf_cl.io.atomic import make_folder
+from svgf_cl.io.frames import check_leftovers, frame_path, kept_frame, write_frame
 
 if TYPE_CHECKING:
     from tracer import Goal, References

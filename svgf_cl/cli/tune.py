@@ -6,12 +6,12 @@ from typing import Annotated
 
 import typer
 
+from svgf_cl.bench.tuner import STEPS, Trial, Tuner
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import Size, parse_size
-from svgf_cl.devices import default_queue
+from svgf_cl.device.devices import default_queue
+from svgf_cl.device.tuning import default_tuning, forget_tuning, store_tuning
 from svgf_cl.frame import Shape
-from svgf_cl.tuner import STEPS, Trial, Tuner
-from svgf_cl.tuning import default_tuning, forget_tuning, store_tuning
 
 
 def tune(

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from benchmarks.footage import FOOTAGE, Footage
-from svgf_cl import cache
+from svgf_cl.io import cache
 from tracer import Camera
 
 SMALL = Footage("small", jitter=True, shape=(30, 40), band=(0.5, 0.7), frames=3, spp=64)

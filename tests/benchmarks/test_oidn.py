@@ -10,7 +10,7 @@ import pytest
 from benchmarks import oidn
 from benchmarks.oidn import QUALITIES, Filter, require_oidn
 from svgf_cl import Frame, SvgfError
-from svgf_cl.room import room_frames
+from svgf_cl.io.synthetic import room_frames
 
 SHAPE = (45, 80)
 

@@ -9,7 +9,7 @@ from benchmarks import race
 from benchmarks.race import Spread
 from svgf_cl import Denoiser, Frame
 from svgf_cl.bench.rig import EVENT, HOST
-from svgf_cl.room import PERIOD, room_frames
+from svgf_cl.io.synthetic import PERIOD, room_frames
 
 SHAPE = (9, 16)
 

@@ -14,7 +14,7 @@ import pytest
 from benchmarks import versus_oidn
 from benchmarks.footage import Footage
 from svgf_cl import Denoiser, Frame
-from svgf_cl.room import room_frames
+from svgf_cl.io.synthetic import room_frames
 
 FOOTAGE = Footage("area", jitter=True, band=(0.6, 0.9), frames=4, spp=32)
 

@@ -14,7 +14,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from svgf_cl import Denoiser, Settings, SettingsError, SvgfError, Tuning
-from svgf_cl.planes import Layout
+from svgf_cl.device.layout import Layout
 from tests.fuzz.effort import effort
 
 anything = st.one_of(

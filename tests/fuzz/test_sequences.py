@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, precondition, rule
 from numpy.testing import assert_array_equal
 
-from svgf_cl import Denoiser, DeviceError, Settings, SvgfError, devices
+from svgf_cl import Denoiser, DeviceError, Settings, SvgfError
+from svgf_cl.device import devices
 from tests.faults import broken_launch, no_room
 from tests.frames import FULL, PLAIN, TINY
 from tests.fuzz import calls

@@ -17,7 +17,7 @@ from numpy.testing import assert_allclose
 
 from svgf_cl import Denoiser, Frame
 from svgf_cl.frame import Shape
-from svgf_cl.reference import LENGTH_MAX
+from svgf_cl.oracle.svgf import LENGTH_MAX
 from tests.frames import bumpy_sequence
 from tests.hard.variants import VARIANTS, Variant
 

@@ -10,7 +10,7 @@ from numpy.testing import assert_array_equal
 
 from svgf_cl import Frame, SvgfError
 from svgf_cl.frame import Shape
-from svgf_cl.reference import Reference
+from svgf_cl.oracle.svgf import Reference
 from tests.frames import PLAIN, SHAPE, bumpy_sequence
 from tests.hard.variants import VARIANTS, Variant
 

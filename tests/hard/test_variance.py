@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from svgf_cl.reference import Reference
+from svgf_cl.oracle.svgf import Reference
 from tests.hard.variants import Variant
 
 STEADY = 1e4

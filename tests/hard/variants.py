@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from svgf_cl import Denoiser, Frame, Settings
-from svgf_cl.accuracy import largest_channel
 from svgf_cl.frame import Shape
-from svgf_cl.reference import Reference
+from svgf_cl.oracle.accuracy import largest_channel
+from svgf_cl.oracle.svgf import Reference
 from tests.frames import FULL, SHAPE, SPLIT, only, wall
 
 # Share of pixels that may be further off: where a tap lies within rounding of a threshold, it counts for one alone.

@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from svgf_cl import Frame
-from svgf_cl.planes import HALO, Layout
+from svgf_cl.device.layout import HALO, Layout
 from tests.denoising import feed
 from tests.frames import FULL, SHAPE, SPLIT, noise, only, wall
 from tests.oracle import assert_follows_oracle, every_case

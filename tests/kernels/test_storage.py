@@ -11,7 +11,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from svgf_cl import Denoiser, Frame, Settings
-from svgf_cl.reference import Reference
+from svgf_cl.oracle.svgf import Reference
 from tests.denoising import feed
 from tests.frames import FULL, SPLIT, bumpy_sequence, traced_sequence, wall
 

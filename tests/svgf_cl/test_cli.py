@@ -12,10 +12,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl import __version__, devices, tuner, tuning
+from svgf_cl import __version__
+from svgf_cl.bench import tuner
 from svgf_cl.cli import main
-from svgf_cl.exr import read_channels, write_channels
-from svgf_cl.sequence import (
+from svgf_cl.device import devices, tuning
+from svgf_cl.io.exr import read_channels, write_channels
+from svgf_cl.io.frames import (
     CHANNEL_NAMES,
     read_frame,
     read_picture,

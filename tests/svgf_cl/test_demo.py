@@ -10,7 +10,7 @@ from PIL import Image
 
 from svgf_cl import Denoiser, SequenceError
 from svgf_cl.demo import SETTINGS, Demo
-from svgf_cl.pictures import GAP, LABEL_HEIGHT
+from svgf_cl.io.panels import GAP, LABEL_HEIGHT
 
 WIDTH, HEIGHT = 64, 36
 

@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from svgf_cl import Denoiser, Frame, Settings, SvgfError
-from svgf_cl.accuracy import DECISION, largest_channel, relative_error
+from svgf_cl.device.layout import HALO, Layout
+from svgf_cl.filters.pipeline import Inputs, pipeline
 from svgf_cl.frame import Shape
-from svgf_cl.passes import Inputs, pipeline
-from svgf_cl.planes import HALO, Layout
-from svgf_cl.reference import Reference
+from svgf_cl.oracle.accuracy import DECISION, largest_channel, relative_error
+from svgf_cl.oracle.svgf import Reference
 from svgf_cl.settings import RANGES
 from tests.denoising import feed, vector_width
 from tests.frames import FULL, PLAIN, SHAPE, SPLIT, TINY, bumpy_sequence, only, traced_sequence, wall

@@ -13,7 +13,8 @@ import pyopencl as cl
 import pytest
 from numpy.testing import assert_array_equal
 
-from svgf_cl import Denoiser, Frame, Settings, devices
+from svgf_cl import Denoiser, Frame, Settings
+from svgf_cl.device import devices
 from tests.frames import FULL, SHAPE, bumpy_sequence
 
 THREADS = 4

@@ -7,7 +7,7 @@ import numba
 import pytest
 
 import tracer.compiled
-from svgf_cl.cache import cache_folder
+from svgf_cl.io.cache import cache_folder
 from tracer.compiled import FOLDER, compiled
 
 

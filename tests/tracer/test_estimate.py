@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from svgf_cl.metrics import relmse
+from svgf_cl.compare.metrics import relmse
 from tracer.estimate import Estimate
 
 PIXELS = 6

@@ -15,10 +15,10 @@ import numpy as np
 import OpenImageIO as oiio  # noqa: N813
 import pytest
 
-from svgf_cl import cache
-from svgf_cl.exr import read_channels
-from svgf_cl.metrics import relmse
-from svgf_cl.sequence import read_frame
+from svgf_cl.compare.metrics import relmse
+from svgf_cl.io import cache
+from svgf_cl.io.exr import read_channels
+from svgf_cl.io.frames import read_frame
 from tracer import Camera, CameraPath, Goal, References, Scene, SceneError, Shot, builtin_scene, render_frame
 from tracer.estimate import Estimate
 from tracer.references import CHUNK, chunks
@@ -30,7 +30,7 @@ ROOM = Shot(builtin_scene(), (18, 32), frames=3)
 KILLED = """
 import sys
 from pathlib import Path
-from svgf_cl import cache
+from svgf_cl.io import cache
 from tracer import Goal, References, Shot, builtin_scene
 cache.cache_folder = lambda: Path(sys.argv[1])
 for estimate in References(Shot(builtin_scene(), (18, 32), frames=3)).refine(1, Goal(10**6)):

@@ -16,9 +16,10 @@ import numpy as np
 import pytest
 from distributed import LocalCluster
 
-from svgf_cl import Frame, cache
+from svgf_cl import Frame
 from svgf_cl.cli import main
-from svgf_cl.exr import read_channels
+from svgf_cl.io import cache
+from svgf_cl.io.exr import read_channels
 from tracer import Goal, References, SceneError, Shot, builtin_scene, render_frame, scheduled, scheduling
 from tracer.references import CHUNK
 from tracer.scheduling import here

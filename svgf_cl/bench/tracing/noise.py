@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from svgf_cl.display import display
-from svgf_cl.metrics import psnr
+from svgf_cl.compare.metrics import psnr
+from svgf_cl.io.display import display
 from tracer import References, Shot, render_frame
 
 

@@ -13,7 +13,7 @@ from svgf_cl.bench.plots import COLORS
 from svgf_cl.bench.report import Section, inline_svg
 from svgf_cl.bench.results import Result
 from svgf_cl.bench.tracing.tables import split_medians, tables
-from svgf_cl.files import written_whole
+from svgf_cl.io.atomic import written_whole
 
 PALETTE = (*COLORS, "#8C564B")
 

@@ -7,7 +7,7 @@ import pyopencl as cl
 import pytest
 
 from svgf_cl.bench.ceilings import ALIGNED, CHAINS, OFFSET, CeilingBench, Ceilings
-from svgf_cl.tuning import Tuning
+from svgf_cl.device.tuning import Tuning
 
 
 @pytest.fixture(params=[1, 4, 8, 16])

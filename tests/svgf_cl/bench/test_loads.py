@@ -8,7 +8,7 @@ import pytest
 
 from svgf_cl import Settings
 from svgf_cl.bench.loads import Loads, loads
-from svgf_cl.passes import Inputs, pipeline
+from svgf_cl.filters.pipeline import Inputs, pipeline
 
 INPUTS = Inputs(signals=1, motion=3, albedo=True, emission=False, id=True)
 

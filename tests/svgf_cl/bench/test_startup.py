@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from svgf_cl import DeviceError, devices
+from svgf_cl import DeviceError
 from svgf_cl.bench.startup import first_frame
+from svgf_cl.device import devices
 
 
 @pytest.fixture

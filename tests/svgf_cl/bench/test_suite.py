@@ -9,9 +9,10 @@ from contextlib import contextmanager
 import pyopencl as cl
 import pytest
 
-from svgf_cl import SvgfError, devices
+from svgf_cl import SvgfError
 from svgf_cl.bench import ceilings, station
 from svgf_cl.bench.suite import TURNS, Suite, interleaved, timed_devices
+from svgf_cl.device import devices
 
 SMALL = (9, 16)
 

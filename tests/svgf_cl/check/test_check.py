@@ -13,7 +13,7 @@ from svgf_cl import Frame, FrameError, check_frame, check_sequence
 from svgf_cl.check import CHECKS, camera, depth, motion, surfaces, values
 from svgf_cl.check.check import Check
 from svgf_cl.check.finding import Finding, Unknown
-from svgf_cl.room import room_frames
+from svgf_cl.io.synthetic import room_frames
 from tests.frames import noise, wall
 
 SHAPE = (180, 320)

@@ -10,7 +10,7 @@ import pytest
 
 from svgf_cl import Frame, check_frame
 from svgf_cl.check.depth import ENCODING, origin
-from svgf_cl.room import FOCAL_LENGTH, room_frames
+from svgf_cl.io.synthetic import FOCAL_LENGTH, room_frames
 
 SHAPE = (180, 320)
 Y, X = np.indices(SHAPE) - np.array([SHAPE[0] - 1, SHAPE[1] - 1])[:, None, None] / 2

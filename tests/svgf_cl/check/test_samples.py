@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from svgf_cl import Frame, check_sequence
-from svgf_cl.exr import read_channels
+from svgf_cl.io.exr import read_channels
 
 SAMPLES = Path(__file__).parents[4] / "shared" / "samples"
 

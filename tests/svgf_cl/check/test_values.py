@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from svgf_cl import Frame, check_frame
-from svgf_cl.room import room_frames
+from svgf_cl.io.synthetic import room_frames
 
 SHAPE = (90, 160)
 

@@ -14,17 +14,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl import cache
 from svgf_cl.cli import main
-from svgf_cl.exr import read_channels
-from svgf_cl.sequence import read_frame, write_frame
+from svgf_cl.io import cache
+from svgf_cl.io.exr import read_channels
+from svgf_cl.io.frames import read_frame, write_frame
 
 # Kills the process as the picture with that number is whole but has not got its name yet.
 KILLED = """
 import os, signal, sys
 from pathlib import Path
 import tracer
-from svgf_cl import cache
+from svgf_cl.io import cache
 from svgf_cl.cli import main
 left, folder, rename = int(sys.argv[1]), Path(sys.argv[2]), os.replace
 def rename_or_die(source, target):

@@ -11,8 +11,8 @@ from PIL import Image
 
 from svgf_cl.cli import main
 from svgf_cl.frame import Frame
-from svgf_cl.room import room_frames
-from svgf_cl.sequence import frame_path, write_frame
+from svgf_cl.io.frames import frame_path, write_frame
+from svgf_cl.io.synthetic import room_frames
 
 SHAPE = (180, 320)
 

@@ -10,7 +10,7 @@ import pytest
 import tracer
 from svgf_cl.cli.scenes import open_scene, read_sky
 from svgf_cl.errors import SvgfError
-from svgf_cl.sequence import write_picture
+from svgf_cl.io.frames import write_picture
 
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 

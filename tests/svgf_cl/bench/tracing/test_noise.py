@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from svgf_cl.bench.tracing.noise import noise
-from svgf_cl.metrics import relmse
+from svgf_cl.compare.metrics import relmse
 from tracer import References, Shot, render_frame
 
 

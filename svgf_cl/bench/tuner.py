@@ -1,0 +1,221 @@
+"""Finds a device's fastest tuning: races candidates against the default on frames of the built-in room.
+
+Coordinate descent, one race each for vector width, alignment of rows and work-group. In a race all denoise the same
+frames in turn, a few rounds at a time, and the slower half drops out. What counts is a candidate's time over the
+default's in the same round: whatever else the machine is doing hits both alike.
+"""
+
+from __future__ import annotations
+
+import random
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from statistics import median
+from typing import Any
+
+import numpy as np
+import pyopencl as cl
+
+from svgf_cl.denoiser import Denoiser
+from svgf_cl.device.layout import Layout
+from svgf_cl.device.probe import summary
+from svgf_cl.device.tuning import VECTOR_WIDTHS, Tuning, default_tuning
+from svgf_cl.errors import SvgfError
+from svgf_cl.frame import Frame, Shape
+from svgf_cl.io.synthetic import PERIOD, room_frames
+from svgf_cl.oracle.accuracy import relative_error
+
+# In this order. Work-groups come last, as PoCL compiles all kernels anew for each: 2 s. None has more than 256 items:
+# GPUs run these whatever registers a kernel takes.
+CHOICES: dict[str, tuple[Any, ...]] = {
+    "vector_width": VECTOR_WIDTHS,
+    "row_alignment": (16, 64, 128, 256),
+    "work_group": ((8, 1), (16, 1), (32, 1), (64, 1), (128, 1), (8, 8), (16, 4), (32, 4), (64, 4), (16, 16)),
+}
+STEPS = sum(map(len, CHOICES.values())) + 1  # of a search, as its progress is counted
+
+SECONDS = 45.0  # then no candidate is built any more and no round begun, but for the least that a verdict takes
+FINAL_SHARE = 0.15  # of these
+
+WARM_UP = 3  # frames: kernels are built, memory is touched
+HOPELESS = 2.5  # times the default's time in the warm-up: out without a race
+ROUNDS = 4  # until the slower half drops out
+FINAL_ROUNDS = 12, 40  # at least, and while there is time
+
+# The winner must be faster in so many rounds of the final (of 12, chance does that once in 50 searches), and worth it.
+CERTAIN = 0.8
+WORTHWHILE = 0.98  # of the default's time
+
+# Tunings differ by rounding, and by more where rounding decides about a tap; a column of wrong pixels is beyond both.
+ROUNDING = 1e-4  # relative, as in svgf_cl.oracle.accuracy
+DECIDED_OTHERWISE = 5e-4  # of the pixels
+
+
+@dataclass
+class Trial:
+    """A tuning and how it did.
+
+    Parameters
+    ----------
+    tuning : Tuning
+    times : list of float, ms
+        Time of each frame on the device.
+    ratios : list of float
+        These times over the default's for the same frame.
+    fault : str
+        Why it is out of the question; empty for a sound one.
+    """
+
+    tuning: Tuning
+    times: list[float] = field(default_factory=list)
+    ratios: list[float] = field(default_factory=list)
+    fault: str = ""
+
+    @property
+    def time(self) -> float:
+        """Median time of a frame, in ms."""
+        return median(self.times)
+
+    @property
+    def ratio(self) -> float:
+        """Median time over the default's; infinite for one that never raced."""
+        return median(self.ratios) if self.ratios else float("inf")
+
+    @property
+    def is_faster(self) -> bool:
+        """Whether it beats the default beyond noise."""
+        wins = sum(ratio < 1 for ratio in self.ratios)
+        return self.ratio <= WORTHWHILE and wins >= CERTAIN * len(self.ratios)
+
+
+@dataclass
+class Runner:
+    """A trial on its way, with the denoiser that is timed."""
+
+    trial: Trial
+    denoiser: Denoiser
+    warm_up: float  # ms, of a frame
+
+
+class Tuner:
+    """A search for the fastest tuning of one device.
+
+    Parameters
+    ----------
+    shape : (int, int)
+        (height, width) of the frames to tune for, >= 1.
+    queue : pyopencl.CommandQueue
+        In order, with profiling.
+
+    Attributes
+    ----------
+    trials : list of Trial
+        Every tuning tried, in order; the default first.
+    untried : int
+        Candidates for which there was no time.
+    """
+
+    def __init__(self, shape: Shape, queue: cl.CommandQueue) -> None:
+        self._shape = shape
+        self._queue = queue
+        self._frames = list(room_frames(shape, PERIOD))
+        self._out = np.empty((*shape, 3), np.float32)
+        self._expected: np.ndarray | None = None
+        self._random = random.Random(0)
+        self._default = Trial(default_tuning(queue.device))
+        self.trials = [self._default]
+        self.untried = 0
+
+    def search(self, advance: Callable[[], None] = lambda: None) -> Trial:
+        """Race the candidates, then the best of them against the default alone.
+
+        Parameters
+        ----------
+        advance : callable
+            Called `STEPS` times, for a progress bar.
+
+        Returns
+        -------
+        Trial
+            That final; the tuning to use is its own if it `is_faster`, else the default.
+
+        Raises
+        ------
+        SvgfError
+            If the default itself does not run on the device.
+        """
+        begin = time.monotonic()
+        best = self._default
+        for knob in CHOICES:
+            best = self._race(best, knob, begin + (1 - FINAL_SHARE) * SECONDS, advance)
+        final = Trial(best.tuning)
+        if best is not self._default:
+            self._run([self._enter(self._default), self._enter(final)], FINAL_ROUNDS, begin + SECONDS)
+        advance()
+        return final
+
+    def _race(self, best: Trial, knob: str, deadline: float, advance: Callable[[], None]) -> Trial:
+        """The fastest of `best`, the default, and what comes of giving `best` other values of one knob."""
+        default = self._enter(self._default)
+        rivals = [] if best is self._default else [self._enter(best)]
+        for value in CHOICES[knob]:
+            rivals += self._candidate(replace(best.tuning, **{knob: value}), deadline)
+            advance()
+        rivals = [runner for runner in rivals if runner.warm_up <= HOPELESS * default.warm_up]
+        while rivals:
+            self._run([default, *rivals], (1, ROUNDS), deadline)
+            rivals.sort(key=lambda runner: runner.trial.ratio)
+            if len(rivals) == 1:
+                break
+            del rivals[(len(rivals) + 1) // 2 :]
+        return min([self._default, *(runner.trial for runner in rivals)], key=lambda trial: trial.ratio)
+
+    def _candidate(self, tuning: Tuning, deadline: float) -> list[Runner]:
+        """A runner for a tuning, or none if it was tried, is at fault, or comes too late."""
+        if self._launch(tuning) in {self._launch(trial.tuning) for trial in self.trials}:
+            return []
+        if time.monotonic() > deadline:
+            self.untried += 1
+            return []
+        trial = Trial(tuning)
+        self.trials.append(trial)
+        try:
+            tuning.check(self._queue.device)
+            return [self._enter(trial)]
+        except (SvgfError, cl.Error) as error:
+            trial.fault = summary(str(error))
+            return []
+
+    def _launch(self, tuning: Tuning) -> tuple[Any, ...]:
+        """What a tuning comes to at this size."""
+        return tuning.vector_width, tuning.work_group, Layout(*self._shape, tuning.row_alignment).pitch
+
+    def _enter(self, trial: Trial) -> Runner:
+        """Warm up; `SvgfError` if the result is not the default's."""
+        denoiser = Denoiser(self._shape, queue=self._queue, tuning=trial.tuning)
+        times = [self._milliseconds(denoiser, frame) for frame in self._frames[:WARM_UP]]
+        if self._expected is None:
+            self._expected = self._out.copy()
+        off = np.mean(~(relative_error(self._out, self._expected) <= ROUNDING))
+        if off > DECIDED_OTHERWISE:
+            raise SvgfError(f"{off:.2%} of its pixels differ from the default's")
+        return Runner(trial, denoiser, min(times[1:]))
+
+    def _run(self, runners: Sequence[Runner], rounds: tuple[int, int], deadline: float) -> None:
+        """Time runners, the default first, frame by frame in turn: rounds[1] frames, after rounds[0] only in time."""
+        for index in range(rounds[1]):
+            if index >= rounds[0] and time.monotonic() > deadline:
+                break
+            frame = self._frames[(WARM_UP + index) % PERIOD]
+            times = {}
+            for runner in self._random.sample(runners, len(runners)):
+                times[runner.trial.tuning] = self._milliseconds(runner.denoiser, frame)
+            for runner in runners:
+                runner.trial.times.append(times[runner.trial.tuning])
+                runner.trial.ratios.append(times[runner.trial.tuning] / times[self._default.tuning])
+
+    def _milliseconds(self, denoiser: Denoiser, frame: Frame) -> float:
+        """Time of a frame on the device."""
+        denoiser.denoise(frame, out=self._out)
+        return sum(denoiser.profile().values())

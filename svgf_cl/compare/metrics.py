@@ -1,0 +1,121 @@
+"""How far a picture is from its reference: as shown (PSNR, SSIM, FLIP), in light (relMSE), and over time.
+
+========  ================  ==========================================================================================
+metric    computed on       definition
+========  ================  ==========================================================================================
+PSNR      display-referred  ``-10 log10(mean((a - b)**2))`` over all pixels and channels, in dB; inf where equal
+SSIM      display-referred  mean structural similarity of the channels, Gaussian window of sigma 1.5, as in Wang et
+                            al. 2004 (scikit-image's ``structural_similarity``); 1 where equal
+FLIP      display-referred  mean difference seen when flipping between the two, at 67 pixels a degree: LDR-FLIP of
+                            Andersson et al. 2020 (NVIDIA's ``flip-evaluator``); 0..1, 0 where equal
+relMSE    linear HDR        ``mean((a - b)**2 / (b**2 + 0.01))``, `b` the reference, as in Rousselle et al. 2011; 0
+                            where equal; one bright dot can outweigh all else
+temporal  display-referred  ``mean(|(a1 - a0) - (b1 - b0)|)`` over two consecutive frames: flicker and lag; the temporal
+                            loss of Chaitanya et al. 2017; 0 where the error stands still
+========  ================  ==========================================================================================
+
+Display-referred: exposed, clipped to 0..1 and sRGB-encoded (`svgf_cl.io.display.display`). NaN in a picture makes its
+metrics NaN.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import astuple, dataclass
+
+import numpy as np
+
+from svgf_cl.errors import SvgfError
+from svgf_cl.io.display import Linear, display
+
+# Least extent of a picture that scikit-image's Gaussian window of sigma 1.5 fits in.
+SSIM_WINDOW = 11
+
+
+@dataclass(frozen=True)
+class Metrics:
+    """PSNR in dB, SSIM and relMSE of one picture against its reference."""
+
+    psnr: float
+    ssim: float
+    relmse: float
+
+
+def measure(picture: Linear, reference: Linear, exposure: float = 0.0) -> Metrics:
+    """Compare two (H, W, 3) linear HDR pictures; `exposure` in stops applies to PSNR and SSIM.
+
+    Raises
+    ------
+    SvgfError
+        Where the sizes differ, or are too small for SSIM.
+    """
+    if picture.shape != reference.shape:
+        raise SvgfError(f"expected two pictures of one shape, got {picture.shape} and {reference.shape}")
+    shown, wanted = display(picture, exposure), display(reference, exposure)
+    return Metrics(psnr(shown, wanted), ssim(shown, wanted), relmse(picture, reference))
+
+
+def mean(metrics: Sequence[Metrics]) -> Metrics:
+    """Average each metric over frames; PSNR as the mean of its decibels."""
+    return Metrics(*np.mean([astuple(m) for m in metrics], axis=0).tolist())
+
+
+def psnr(shown: Linear, wanted: Linear) -> float:
+    """Return the peak signal-to-noise ratio of two display-referred pictures in dB, peak 1."""
+    error = float(np.mean(np.square(shown - wanted)))
+    return float(-10 * np.log10(error)) if error else float("inf")
+
+
+def ssim(shown: Linear, wanted: Linear) -> float:
+    """Return the mean structural similarity of two display-referred pictures."""
+    if min(shown.shape[:2]) < SSIM_WINDOW:
+        height, width, _ = shown.shape
+        raise SvgfError(f"SSIM: expected pictures of at least {SSIM_WINDOW}x{SSIM_WINDOW} pixels, got {width}x{height}")
+    require_ssim()
+    from skimage.metrics import structural_similarity
+
+    similarity = structural_similarity(
+        shown, wanted, channel_axis=-1, data_range=1.0, gaussian_weights=True, sigma=1.5, use_sample_covariance=False
+    )
+    return float(similarity)
+
+
+def require_ssim() -> None:
+    """Raise `SvgfError`, with the command that installs it, where scikit-image is missing."""
+    try:
+        import skimage.metrics  # noqa: F401
+    except ModuleNotFoundError as error:
+        raise SvgfError(f"SSIM needs scikit-image ({error}): pip install '.[metrics]' in a clone of svgf_cl") from error
+
+
+def flip(shown: Linear, wanted: Linear) -> float:
+    """Return the mean FLIP error of two display-referred pictures."""
+    require_flip()
+    import flip_evaluator
+
+    if np.isnan(shown).any() or np.isnan(wanted).any():
+        return float("nan")  # the library scores a NaN like a colour
+    _, error, _ = flip_evaluator.evaluate(
+        np.asarray(wanted, np.float32), np.asarray(shown, np.float32), "LDR", applyMagma=False
+    )
+    return float(error)
+
+
+def require_flip() -> None:
+    """Raise `SvgfError`, with the command that installs it, where NVIDIA's evaluator is missing."""
+    try:
+        import flip_evaluator  # noqa: F401
+    except ModuleNotFoundError as error:
+        raise SvgfError(f"FLIP needs flip-evaluator ({error}): pip install '.[bench]' in a clone of svgf_cl") from error
+
+
+def temporal_error(shown: tuple[Linear, Linear], wanted: tuple[Linear, Linear]) -> float:
+    """Return how much the error changes between two consecutive display-referred pictures, earlier one first."""
+    change, truth = shown[1] - shown[0], wanted[1] - wanted[0]
+    return float(np.mean(np.abs(change - truth)))
+
+
+def relmse(picture: Linear, reference: Linear) -> float:
+    """Return the relative mean squared error of two linear pictures."""
+    tested, truth = np.asarray(picture, np.float64), np.asarray(reference, np.float64)
+    return float(np.mean(np.square(tested - truth) / (np.square(truth) + 0.01)))

@@ -1,0 +1,1 @@
+"""Devices: finding them, building kernels for them, laying out and binding memory."""

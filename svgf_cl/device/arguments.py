@@ -1,0 +1,78 @@
+"""What a `Denoiser` is made of, checked before anything is done with it."""
+
+from __future__ import annotations
+
+import operator
+import warnings
+
+import pyopencl as cl
+
+from svgf_cl.device import devices
+from svgf_cl.device.layout import Layout
+from svgf_cl.device.tuning import Tuning, best_tuning
+from svgf_cl.errors import SvgfError, shown
+from svgf_cl.frame import Shape
+from svgf_cl.settings import Settings
+
+
+def check_settings(settings: Settings | None) -> Settings:
+    """The defaults for None; `SvgfError` for anything that is not `Settings`."""
+    if settings is None:
+        return Settings()
+    if not isinstance(settings, Settings):
+        raise SvgfError(f"Denoiser: expected settings=Settings(...), got {shown(settings)}")
+    return settings
+
+
+def check_queue(queue: cl.CommandQueue | None) -> cl.CommandQueue:
+    """A queue on the default device for None; `SvgfError` for one that may run the passes out of order, or is dead."""
+    if queue is None:
+        return devices.default_queue()
+    if not isinstance(queue, cl.CommandQueue):
+        raise SvgfError(f"Denoiser: expected queue=pyopencl.CommandQueue(...), got {shown(queue)}")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", cl.CommandQueueUsedAfterExit)
+            _ = queue.int_ptr
+        _ = queue.context.devices  # on Intel's runtime a queue does not keep its context alive
+    except (cl.CommandQueueUsedAfterExit, cl.Error) as error:
+        raise SvgfError(
+            f"Denoiser: expected a queue before the end of its 'with', whose Context is kept; got a dead one ({error})"
+        ) from error
+    if queue.properties & cl.command_queue_properties.OUT_OF_ORDER_EXEC_MODE_ENABLE:
+        raise SvgfError("Denoiser: expected an in-order queue, got one with OUT_OF_ORDER_EXEC_MODE_ENABLE")
+    return queue
+
+
+def held(queue: cl.CommandQueue) -> cl.CommandQueue:
+    """Another handle of a queue: its owner's is dead at the end of its ``with``, and drivers crash on a dead one."""
+    return cl.CommandQueue.from_int_ptr(queue.int_ptr)
+
+
+def check_tuning(tuning: Tuning | None, device: cl.Device) -> Tuning:
+    """The best known for None; `SvgfError` for one that is not for this device."""
+    if tuning is None:
+        return best_tuning(device)
+    if not isinstance(tuning, Tuning):
+        raise SvgfError(f"Denoiser: expected tuning=Tuning(...), got {shown(tuning)}")
+    tuning.check(device)
+    return tuning
+
+
+def check_shape(shape: Shape) -> Shape:
+    """(height, width) as plain integers; `SvgfError` unless both are whole numbers of at least 1."""
+    try:
+        height, width = (operator.index(side) for side in shape)
+    except (TypeError, ValueError) as error:
+        raise SvgfError(f"Denoiser: expected shape (height, width), got {shown(shape)}") from error
+    if height < 1 or width < 1:
+        raise SvgfError(f"Denoiser: expected a shape of at least 1 x 1 pixel, got {shown(shape)}")
+    return height, width
+
+
+def layout_of(shape: Shape, row_alignment: int) -> Layout:
+    """The layout of an image; `SvgfError` where it is too large for the kernels' indices."""
+    layout = Layout(*shape, row_alignment)
+    if not layout.indexable:
+        raise SvgfError(f"Denoiser: expected an image of at most about 16000 x 16000 pixels, got {shown(shape)}")
+    return layout

@@ -1,0 +1,264 @@
+"""Lists every OpenCL device with whether it works, and chooses the one to use.
+
+A listed device is not a working device (see `svgf_cl.device.probe`), so only devices that passed the probe are chosen.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import pyopencl as cl
+
+from svgf_cl.device import intel_runtime, probe
+from svgf_cl.errors import DeviceError
+
+# Here, as `import svgf_cl` comes by: a loader looks once, when anyone in this process first lists the platforms.
+intel_runtime.register()
+
+# By pyopencl's own name, so that it means the same in every program.
+VARIABLE = "PYOPENCL_CTX"
+
+POCL = "Portable Computing Language"
+
+# A CPU is as fast as its driver's compiler. The order is that of docs/extending.md, fastest first;
+# compute units and clock say nothing here, as all drivers report the same silicon (and Intel's a clock of 0).
+CPU_PLATFORMS = (intel_runtime.PLATFORM, POCL)
+
+# A simulator claims to be of every type; it finds bugs and is thousands of times slower than anything else.
+SIMULATOR = "Oclgrind"
+
+INSTALL_HINT = """Install one of:
+  Debian, Ubuntu:       apt-get install pocl-opencl-icd
+  x86-64 Linux, no root: pip install '.[cpu]' in a clone of svgf_cl
+  a GPU:                its vendor's driver with OpenCL"""
+
+_lock = threading.Lock()  # threads that make their first queue at once shall share its context
+
+
+@dataclass(frozen=True)
+class DeviceReport:
+    """One device as its driver lists it, and whether it works.
+
+    Attributes
+    ----------
+    selector : str
+        What names this device in ``PYOPENCL_CTX``: platform number, colon, device number.
+    platform, version : str
+        The OpenCL implementation.
+    device, driver : str
+        The device and its driver's version.
+    kind : str
+        ``GPU``, ``accelerator``, ``CPU``, ``simulator`` or ``other``.
+    reason : str
+        Why it does not work; empty if it does.
+    is_default : bool
+        Whether `default_device` returns it.
+    handle : pyopencl.Device, optional
+        The device itself; None where the driver could not list any.
+    """
+
+    selector: str
+    platform: str
+    version: str
+    device: str
+    driver: str
+    kind: str
+    reason: str
+    is_default: bool = False
+    handle: cl.Device | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def works(self) -> bool:
+        """Whether the device built and ran the probe."""
+        return not self.reason
+
+    def __str__(self) -> str:
+        return f"{self.selector}  {self.device} ({self.platform}, {self.driver}): {self.reason or 'works'}"
+
+
+def list_devices(*, refresh: bool = False) -> list[DeviceReport]:
+    """Return every device of every platform, in the loader's order.
+
+    Parameters
+    ----------
+    refresh : bool
+        Probe again the devices that are remembered as not working.
+
+    Returns
+    -------
+    list of DeviceReport
+        At most one `is_default`; none is where `choose` raises.
+    """
+    reports = _survey(refresh=refresh)
+    try:
+        default = choose(reports)
+    except DeviceError:
+        return reports
+    return [replace(report, is_default=report is default) for report in reports]
+
+
+def choose(reports: Sequence[DeviceReport]) -> DeviceReport:
+    """Return the report on the device that ``PYOPENCL_CTX`` names, else on the fastest working one.
+
+    GPUs come before accelerators and these before CPUs; within a kind, discrete before integrated, then the most
+    compute units times clock. CPU drivers come in the order of `CPU_PLATFORMS`. The loader's order breaks ties.
+
+    Parameters
+    ----------
+    reports : sequence of DeviceReport
+        All that `list_devices` returns.
+
+    Returns
+    -------
+    DeviceReport
+
+    Raises
+    ------
+    DeviceError
+        No device works, or ``PYOPENCL_CTX`` names none that does.
+    """
+    if working := [report for report in _candidates(reports) if report.works]:
+        return min(working, key=_rank)
+    if VARIABLE in os.environ:
+        raise DeviceError(f"{VARIABLE}={os.environ[VARIABLE]!r} names a device that does not work")
+    raise DeviceError(f"No OpenCL device works. {INSTALL_HINT}")
+
+
+def default_device() -> cl.Device:
+    """Return the device that ``PYOPENCL_CTX`` names, else the fastest working one; see `choose`.
+
+    Returns
+    -------
+    pyopencl.Device
+
+    Raises
+    ------
+    DeviceError
+        No device works, or ``PYOPENCL_CTX`` names none that does. The message lists every device's reason.
+    """
+    reports = _survey()
+    try:
+        if not any(report.works for report in _candidates(reports)):
+            # Drivers get repaired and permissions granted: doubt the memory before giving up.
+            reports = _survey(refresh=True)
+        chosen = choose(reports)
+    except DeviceError as error:
+        raise DeviceError(f"{error}\nThe OpenCL loader lists:\n{_table(reports)}") from error
+    assert chosen.handle is not None
+    return chosen.handle
+
+
+def default_queue() -> cl.CommandQueue:
+    """Return a new queue, with profiling, on the default device; see `default_device`.
+
+    Returns
+    -------
+    pyopencl.CommandQueue
+
+    Raises
+    ------
+    DeviceError
+        As `default_device`.
+    """
+    return create_queue(default_device())
+
+
+def create_queue(device: cl.Device) -> cl.CommandQueue:
+    """Return a new queue, with profiling, on a device; all such queues of a device share one context.
+
+    Parameters
+    ----------
+    device : pyopencl.Device
+
+    Returns
+    -------
+    pyopencl.CommandQueue
+    """
+    with _lock:
+        context = _context(device)
+    return cl.CommandQueue(context, device, properties=cl.command_queue_properties.PROFILING_ENABLE)
+
+
+@functools.cache
+def _context(device: cl.Device) -> cl.Context:
+    return cl.Context([device])
+
+
+def _survey(*, refresh: bool = False) -> list[DeviceReport]:
+    reports = []
+    platforms = _platforms()
+    for index, platform in enumerate(platforms):
+        try:
+            devices = platform.get_devices()
+        except cl.Error as error:
+            reports.append(_unlisted(str(index), platform.name, platform.version, probe.summary(str(error))))
+            continue
+        reports += [_report(f"{index}:{number}", device, refresh) for number, device in enumerate(devices)]
+    if reason := intel_runtime.why_unlisted({platform.name for platform in platforms}):
+        reports.append(_unlisted("-", intel_runtime.PLATFORM, "version unknown", reason))
+    return reports
+
+
+def _platforms() -> list[cl.Platform]:
+    try:
+        return list(cl.get_platforms())
+    except cl.LogicError as error:
+        if error.code == cl.status_code.PLATFORM_NOT_FOUND_KHR:
+            return []
+        raise
+
+
+def _report(selector: str, device: cl.Device, refresh: bool) -> DeviceReport:
+    return DeviceReport(
+        selector=selector,
+        platform=device.platform.name,
+        version=device.platform.version,
+        device=device.name,
+        driver=device.driver_version,
+        kind=_kind(device),
+        reason=probe.reason(device, refresh=refresh),
+        handle=device,
+    )
+
+
+def _unlisted(selector: str, platform: str, version: str, reason: str) -> DeviceReport:
+    return DeviceReport(selector, platform, version, "no device", "unknown", "other", reason)
+
+
+def _kind(device: cl.Device) -> str:
+    if device.platform.name == SIMULATOR:
+        return "simulator"
+    types = {"GPU": cl.device_type.GPU, "accelerator": cl.device_type.ACCELERATOR, "CPU": cl.device_type.CPU}
+    return next((kind for kind, bit in types.items() if device.type & bit), "other")
+
+
+def _candidates(reports: Sequence[DeviceReport]) -> list[DeviceReport]:
+    """Return the reports that `choose` may choose from: the one that the user names, else all."""
+    name = os.environ.get(VARIABLE)
+    if name is None:
+        return list(reports)
+    try:
+        devices = cl.choose_devices(interactive=False, answers=name.split(":"))
+    except (cl.Error, RuntimeError) as error:
+        raise DeviceError(f"{VARIABLE}={name!r} names no device: {error}") from error
+    if len(devices) != 1:
+        raise DeviceError(f"{VARIABLE}={name!r} names {len(devices)} devices, expected one")
+    return [report for report in reports if report.handle == devices[0]]
+
+
+def _rank(report: DeviceReport) -> tuple[int, int, bool, int]:
+    device = report.handle
+    assert device is not None
+    kind = ("GPU", "accelerator", "CPU", "other", "simulator").index(report.kind)
+    if report.kind == "CPU":
+        known = report.platform in CPU_PLATFORMS
+        return kind, CPU_PLATFORMS.index(report.platform) if known else len(CPU_PLATFORMS), False, 0
+    return kind, 0, device.host_unified_memory, -device.max_compute_units * device.max_clock_frequency
+
+
+def _table(reports: Sequence[DeviceReport]) -> str:
+    return "\n".join(f"  {report}" for report in reports) or "  no device at all"

@@ -1,0 +1,198 @@
+"""Finds out whether a listed OpenCL device works, by building and running a tiny kernel on it.
+
+A broken driver may crash or hang, so the kernel runs in a process of its own. That takes a fraction of a second; the
+answer is remembered in the cache directory, under everything that may change it. A crash or a hang is no answer: the
+machine may have been busy, so it is remembered only as long as this process lives.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import warnings
+from collections.abc import Iterator
+
+import numpy as np
+import pyopencl as cl
+
+from svgf_cl.device.programs import OPTIONS
+from svgf_cl.errors import SvgfError
+from svgf_cl.io.atomic import read_json, written_whole
+from svgf_cl.io.cache import cache_folder, device_key
+
+# Part of the key under which answers are remembered: raise it whenever the probe asks for more.
+VERSION = 1
+MEMORY = "probes.json"
+TIMEOUT_SECONDS = 60
+
+# Starts the line that holds the answer, as drivers print on their own account, at exit too.
+ANSWER = "svgf_cl.device.probe answers "
+
+KERNEL = """
+kernel void probe(global const float4 *in, global float4 *out, const float scale)
+{
+    const size_t i = get_global_id(0);
+    out[i] = fma((float4)(scale), in[i], sqrt(in[i]));
+}
+"""
+
+
+_unanswered: dict[str, str] = {}
+
+
+class NoAnswerError(Exception):
+    """The probe came to no end; the message says how."""
+
+
+def reason(device: cl.Device, *, refresh: bool = False) -> str:
+    """Return why a device does not work, in one line; an empty string if it works.
+
+    Parameters
+    ----------
+    device : pyopencl.Device
+        Any listed device.
+    refresh : bool
+        Doubt the remembered answer if it is that the device does not work.
+
+    Returns
+    -------
+    str
+    """
+    name = key(device)
+    known = (_recall() | _unanswered).get(name)
+    if known is None or (refresh and known):
+        return _ask(name)
+    return known
+
+
+def key(device: cl.Device) -> str:
+    """Return what identifies a device together with its driver and this probe; equal devices share it.
+
+    Parameters
+    ----------
+    device : pyopencl.Device
+
+    Returns
+    -------
+    str
+    """
+    return f"{device_key(device)} | probe {VERSION}"
+
+
+def run(device: cl.Device) -> str:
+    """Probe a device in this process; the result is that of `reason`.
+
+    Parameters
+    ----------
+    device : pyopencl.Device
+
+    Returns
+    -------
+    str
+    """
+    numbers = np.arange(1, 65, dtype=np.float32)
+    result = np.zeros_like(numbers)
+    try:
+        context = cl.Context([device])
+        queue = cl.CommandQueue(context, properties=cl.command_queue_properties.PROFILING_ENABLE)
+        program = cl.Program(context, KERNEL).build(options=list(OPTIONS))
+        source = cl.Buffer(context, cl.mem_flags.READ_ONLY | cl.mem_flags.COPY_HOST_PTR, hostbuf=numbers)
+        target = cl.Buffer(context, cl.mem_flags.WRITE_ONLY, numbers.nbytes)
+        program.probe(queue, (numbers.size // 4,), None, source, target, np.float32(3))
+        cl.enqueue_copy(queue, result, target)
+    except cl.Error as error:
+        return summary(str(error))
+    if not np.allclose(result, 3 * numbers + np.sqrt(numbers), rtol=1e-6):
+        return "computes wrong numbers"
+    return ""
+
+
+def summary(log: str) -> str:
+    """Return the line of a driver's message that says most: the first that names an error, else the last.
+
+    Parameters
+    ----------
+    log : str
+        May be empty.
+
+    Returns
+    -------
+    str
+    """
+    lines = [line.strip() for line in log.splitlines() if line.strip()]
+    errors = (line for line in lines if "error" in line.lower())
+    return next(errors, lines[-1] if lines else "the driver gives no reason")
+
+
+def _ask(name: str) -> str:
+    try:
+        answer = _run_apart(name)
+    except NoAnswerError as failure:
+        _unanswered[name] = str(failure)
+        return str(failure)
+    _unanswered.pop(name, None)
+    _remember(_recall() | {name: answer})
+    return answer
+
+
+def _run_apart(wanted: str) -> str:
+    environment = os.environ | {
+        # The modules of this process, and none that happen to lie in the current folder.
+        "PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path),
+        "PYTHONSAFEPATH": "1",
+        # No answer from pyopencl's binary cache: the compiler is what is on trial.
+        "PYOPENCL_NO_CACHE": "1",
+    }
+    command = [sys.executable, "-W", "ignore", "-m", "svgf_cl.device.probe", wanted]
+    try:
+        child = subprocess.run(
+            command, env=environment, capture_output=True, text=True, errors="replace", timeout=TIMEOUT_SECONDS
+        )
+    except subprocess.TimeoutExpired as hang:
+        raise NoAnswerError(f"the driver hangs: no answer within {TIMEOUT_SECONDS} s") from hang
+    if child.returncode < 0:
+        crash = signal.Signals(-child.returncode).name
+        raise NoAnswerError(f"the driver crashes ({crash}): {summary(child.stderr)}")
+    answers = [line.removeprefix(ANSWER) for line in child.stdout.splitlines() if line.startswith(ANSWER)]
+    if child.returncode or not answers:
+        raise NoAnswerError(f"the probe fails: {summary(child.stderr)}")
+    return str(json.loads(answers[-1]))
+
+
+def _listed() -> Iterator[cl.Device]:
+    for platform in cl.get_platforms():
+        with contextlib.suppress(cl.Error):  # svgf_cl.device.devices says so; the wanted device is another platform's
+            yield from platform.get_devices()
+
+
+def _recall() -> dict[str, str]:
+    try:
+        known = read_json(cache_folder() / MEMORY)
+    except (OSError, ValueError):
+        return {}  # never asked before, unreadable, or damaged: ask the device
+    entries = known.items() if isinstance(known, dict) else ()
+    return {name: answer for name, answer in entries if isinstance(answer, str)}
+
+
+def _remember(answers: dict[str, str]) -> None:
+    try:
+        cache_folder().mkdir(parents=True, exist_ok=True)
+        with written_whole(cache_folder() / MEMORY) as aside:
+            aside.write_text(json.dumps(answers, indent=1), encoding="utf-8")
+    except (OSError, SvgfError) as error:
+        warnings.warn(f"svgf_cl will probe its devices in every run: {error}", stacklevel=3)
+
+
+def _main(wanted: str) -> None:
+    device = next((device for device in _listed() if key(device) == wanted), None)
+    if device is None:
+        sys.exit("the loader does not list the device in a process of its own")
+    print(f"\n{ANSWER}{json.dumps(run(device))}", flush=True)
+
+
+if __name__ == "__main__":
+    _main(sys.argv[1])

@@ -1,0 +1,172 @@
+"""`Tuning`: how kernels are cut into vectors and work-groups and rows laid out, and the best known for each device."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+import warnings
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import pyopencl as cl
+
+from svgf_cl.device import programs
+from svgf_cl.device.layout import PAGE, ROW_ALIGNMENT, WIDEST_VECTOR
+from svgf_cl.errors import DeviceError, SvgfError, shown
+from svgf_cl.io.atomic import make_folder, read_json, written_whole
+from svgf_cl.io.cache import cache_folder, device_key
+
+MEMORY = "tunings.json"
+VECTOR_WIDTHS = (1, 4, 8, 16)  # what kernels/common.clh is written for
+
+# On a CPU most of a row, as each work-group costs its driver a tenth of a microsecond or more; on a GPU, where a vector
+# is one pixel, a tile of whole warps.
+CPU_WORK_GROUP = (64, 1)
+GPU_WORK_GROUP = (32, 4)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tuning:
+    """What changes how fast a device is, and nothing else: results agree to within rounding.
+
+    Parameters
+    ----------
+    vector_width : int, pixels, one of 1, 4, 8, 16
+        Pixels of a row that a work-item treats as one vector.
+    work_group : (int, int), work-items, each >= 1
+        Size of a work-group, along a row and down; less for a kernel of which the device can run fewer together.
+    row_alignment : int, pixels, 16 .. 512, a multiple of 16
+        Rows of the device's planes are a multiple of it apart; see `svgf_cl.device.layout.Layout`.
+
+    Raises
+    ------
+    SvgfError
+        If a value is out of its range.
+    """
+
+    vector_width: int
+    work_group: tuple[int, int]
+    row_alignment: int = ROW_ALIGNMENT
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.vector_width, int) or self.vector_width not in VECTOR_WIDTHS:
+            raise SvgfError(f"Tuning.vector_width: expected one of {VECTOR_WIDTHS}, got {shown(self.vector_width)}")
+        group = self.work_group
+        if not (isinstance(group, tuple) and len(group) == 2 and all(isinstance(n, int) and n >= 1 for n in group)):
+            raise SvgfError(f"Tuning.work_group: expected two whole numbers >= 1, got {shown(group)}")
+        alignments = range(WIDEST_VECTOR, PAGE // 2 + 1, WIDEST_VECTOR)
+        if not isinstance(self.row_alignment, int) or self.row_alignment not in alignments:
+            raise SvgfError(
+                f"Tuning.row_alignment: expected a multiple of {WIDEST_VECTOR} in {WIDEST_VECTOR}..{PAGE // 2}, "
+                f"got {shown(self.row_alignment)}"
+            )
+
+    def __str__(self) -> str:
+        along, down = self.work_group
+        return f"vectors of {self.vector_width}, rows aligned to {self.row_alignment}, work-groups of {along}x{down}"
+
+    def check(self, device: cl.Device) -> None:
+        """Raise `DeviceError` where `device` has no work-groups as large as these."""
+        items = self.work_group[0] * self.work_group[1]
+        most = device.max_work_group_size, *device.max_work_item_sizes[:2]
+        if any(asked > limit for asked, limit in zip((items, *self.work_group), most, strict=True)):
+            raise DeviceError(
+                f"Tuning.work_group: expected at most {most[0]} work-items, {most[1]} along a row and {most[2]} down, "
+                f"on {device.name}; got {self.work_group}"
+            )
+
+
+def best_tuning(device: cl.Device) -> Tuning:
+    """The tuning that ``svgf-cl tune`` found for a device and its driver, else the default."""
+    return stored_tuning(device) or default_tuning(device)
+
+
+def default_tuning(device: cl.Device) -> Tuning:
+    """What suits most devices of this kind.
+
+    On a CPU, vectors of twice its native width, which hides the latency of its arithmetic; 16 is the widest type OpenCL
+    has. Where there is none the driver makes vectors of work-items itself (rusticl on llvmpipe). There, and elsewhere,
+    single pixels.
+    """
+    if not device.type & cl.device_type.CPU:
+        return Tuning(vector_width=1, work_group=GPU_WORK_GROUP)
+    native = device.native_vector_width_float
+    return Tuning(vector_width=min(16, 2 * native) if native > 1 else 1, work_group=CPU_WORK_GROUP)
+
+
+def stored_tuning(device: cl.Device) -> Tuning | None:
+    """The tuning stored for a device, its driver and these kernels; None where there is none.
+
+    A file that cannot be used is no reason not to denoise: it counts as none, with a warning.
+    """
+    try:
+        entry = read_memory().get(device_key(device))
+        if entry is None or entry["kernels"] != kernels_digest():
+            return None
+        values = entry["tuning"]
+        tuning = Tuning(**{**values, "work_group": tuple(values["work_group"])})
+        tuning.check(device)
+    except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
+        warnings.warn(
+            f"{memory()}: cannot be used ({error!r}), so devices run untuned; 'svgf-cl tune' writes it anew",
+            stacklevel=2,
+        )
+        return None
+    return tuning
+
+
+def store_tuning(device: cl.Device, tuning: Tuning) -> Path:
+    """Remember a tuning for a device, its driver and these kernels, and return the file it is in.
+
+    Raises
+    ------
+    SvgfError
+        Where that file cannot be written.
+    """
+    return write_memory(known_tunings() | {device_key(device): {"kernels": kernels_digest(), "tuning": asdict(tuning)}})
+
+
+def forget_tuning(device: cl.Device) -> Path:
+    """Forget what was stored for a device, and return the file it was in; errors as `store_tuning`."""
+    return write_memory({key: entry for key, entry in known_tunings().items() if key != device_key(device)})
+
+
+@functools.cache
+def kernels_digest() -> str:
+    """What identifies the kernels: the best tuning of others may be none of these."""
+    sources = "".join(programs.source(stage) for stage in programs.stages())
+    return hashlib.sha256(sources.encode()).hexdigest()[:16]
+
+
+def memory() -> Path:
+    """The file of tunings."""
+    return cache_folder() / MEMORY
+
+
+def read_memory() -> dict[str, Any]:
+    """Every stored tuning by `device_key`; `OSError` or `ValueError` where the file is unreadable or damaged."""
+    try:
+        entries = read_json(memory())
+    except FileNotFoundError:
+        return {}
+    if not isinstance(entries, dict):
+        raise ValueError(f"expected an object, got {type(entries).__name__}")
+    return entries
+
+
+def known_tunings() -> dict[str, Any]:
+    """As `read_memory`, but empty where that fails: whatever was in such a file is lost already."""
+    try:
+        return read_memory()
+    except (OSError, ValueError):
+        return {}
+
+
+def write_memory(entries: dict[str, Any]) -> Path:
+    """Write the file of tunings, whole or not at all."""
+    make_folder(cache_folder())
+    with written_whole(memory()) as aside:
+        aside.write_text(json.dumps(entries, indent=1), encoding="utf-8")
+    return memory()

@@ -1,0 +1,1 @@
+"""The filters, one file each, and the words in which they are declared."""

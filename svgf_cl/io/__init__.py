@@ -1,0 +1,1 @@
+"""Files in and out: frames, pictures, what is kept on this machine."""

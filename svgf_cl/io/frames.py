@@ -1,0 +1,235 @@
+"""Frames and pictures as OpenEXR files: one file a frame, float32, lossless (zip), one named channel a component.
+
+The channels of each field are in docs/conventions.md. A plain picture (denoised, reference) has ``R G B`` alone. Frames
+are called ``frame.0000.exr``, references ``reference.0000.exr``; the number is the frame's place in its sequence.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from svgf_cl.errors import FrameError, SequenceError
+from svgf_cl.frame import REQUIRED, Frame, extent
+from svgf_cl.io.atomic import entries, require
+from svgf_cl.io.exr import Plane, read_attribute, read_channels, write_channels
+
+# Channels of each field, in the order of its components; a third motion component may be missing.
+CHANNEL_NAMES: dict[str, tuple[str, ...]] = {
+    "color": ("R", "G", "B"),
+    **{
+        name: tuple(f"{name}.{c}" for c in "RGB")
+        for name in ("albedo", "emission", "direct", "indirect", "diffuse", "specular")
+    },
+    **{name: tuple(f"{name}.{c}" for c in "XYZ") for name in ("normal", "motion")},
+    "depth": ("depth.Z",),
+    "id": ("id",),
+    "roughness": ("roughness",),
+    "hit_distance": ("hit_distance.diffuse", "hit_distance.specular"),
+}
+MAX_ID = 2**24
+MADE_FROM = "svgf_cl:made_from"  # the attribute that tells what a frame was made from
+NUMBERED = re.compile(r"(frame|reference)\.\d+\.exr|(frame|still)\.\d+\.png")
+
+
+def frame_path(folder: Path, number: int, stem: str = "frame") -> Path:
+    """Name the file of frame `number` in `folder`: ``frame.0007.exr``."""
+    return folder / f"{stem}.{number:04d}.exr"
+
+
+def frame_number(path: Path) -> int | None:
+    """Return the number in a name like ``frame.0007.exr``; None where there is none."""
+    match = re.search(r"\.(\d+)\.exr$", path.name)
+    return int(match[1]) if match else None
+
+
+def find_numbered(folder: Path, stem: str) -> list[Path]:
+    """Find every ``stem.NUMBER.exr`` in `folder`, sorted by number."""
+    name = re.compile(re.escape(stem) + r"\.(\d+)\.exr")
+    found = [(int(match[1]), path) for path in entries(folder) if (match := name.fullmatch(path.name))]
+    return [path for _, path in sorted(found)]
+
+
+def find_frames(paths: Iterable[Path]) -> list[Path]:
+    """Expand folders to the ``frame.NUMBER.exr`` in them, sorted by number; files stay as given.
+
+    Raises
+    ------
+    SequenceError
+        Where a path is missing, or a folder holds no frame or lacks one between two others.
+    """
+    found: list[Path] = []
+    for path in paths:
+        require(path)
+        files = find_numbered(path, "frame") if path.is_dir() else [path]
+        if not files:
+            raise SequenceError(f"{path}: expected files named frame.0000.exr in this folder, found none")
+        if path.is_dir():
+            check_gaps(files)
+        found += files
+    return found
+
+
+def check_gaps(files: Sequence[Path]) -> None:
+    """Raise `SequenceError` where a number is missing: the next frame's motion would lead to the wrong one."""
+    for before, after in pairwise(files):
+        missing = (frame_number(before) or 0) + 1
+        if missing < (frame_number(after) or 0):
+            gap = frame_path(before.parent, missing)
+            raise SequenceError(f"{gap}: expected this frame between {before.name} and {after.name}, found none")
+
+
+def check_leftovers(folder: Path, written: Collection[Path]) -> None:
+    """Raise `SequenceError` where pictures of an earlier run would stay in `folder` and pass for a part of this one."""
+    for path in sorted(entries(folder) if folder.is_dir() else []):
+        if NUMBERED.fullmatch(path.name) and path not in written:
+            raise SequenceError(f"{path}: left by an earlier run of other length; delete it, or choose another folder")
+
+
+def write_frame(path: Path, frame: Frame, made_from: str = "") -> None:
+    """Write a frame of numpy arrays as one EXR file, whole or not at all.
+
+    Parameters
+    ----------
+    path : Path
+    frame : Frame
+    made_from : str
+        What stands for all that the frame depends on, for `kept_frame` to know it by.
+
+    Raises
+    ------
+    FrameError
+        Where the frame is not consistent in itself.
+    SequenceError
+        Where an id is greater than 2**24, or the file cannot be written.
+    """
+    write_channels(path, channels_of(path, frame), {MADE_FROM: made_from} if made_from else {})
+
+
+def kept_frame(path: Path, made_from: str) -> Frame | None:
+    """Read the frame that an earlier run made from the same and wrote whole; None where there is no such file."""
+    try:
+        return read_frame(path) if read_attribute(path, MADE_FROM) == made_from else None
+    except SequenceError:
+        return None
+
+
+def is_picture(path: Path, picture: Plane) -> bool:
+    """Whether the file at `path` holds this (H, W, 3) picture, bit by bit."""
+    try:
+        return read_picture(path).tobytes() == picture.tobytes()
+    except SequenceError:
+        return False
+
+
+def channels_of(path: Path, frame: Frame) -> dict[str, Plane]:
+    """Take a frame of numpy arrays apart into the channels of file `path`; errors as of `write_frame`."""
+    frame.check(frame.shape)
+    planes: dict[str, Plane] = {}
+    for field, value in frame.present().items():
+        if field == "id" and value.max(initial=0) > MAX_ID:
+            raise SequenceError(f"{path}: expected ids up to {MAX_ID} (whole numbers in float32), got {value.max()}")
+        components = np.asarray(value, np.float32).reshape(*frame.shape, -1)
+        planes |= zip(CHANNEL_NAMES[field], np.moveaxis(components, -1, 0), strict=False)
+    return planes
+
+
+def read_frame(path: Path) -> Frame:
+    """Read a frame that `write_frame`, or a renderer with the same channel names, wrote.
+
+    Raises
+    ------
+    SequenceError
+        Where the file is missing or not an EXR file, or where a field is absent, incomplete or of a wrong value.
+    """
+    planes = read_channels(path)
+    values = {field: value for field in CHANNEL_NAMES if (value := field_of(path, planes, field)) is not None}
+    for field in REQUIRED:
+        if field not in values:
+            raise absent(path, CHANNEL_NAMES[field], planes)
+    frame = Frame(**{**values, "id": whole_numbers(path, values["id"]) if "id" in values else None})
+    try:
+        frame.check_presence()
+    except FrameError as error:
+        raise SequenceError(f"{path}: {error}; channels found: {' '.join(planes)}") from error
+    return frame
+
+
+def read_sequence(paths: Sequence[Path]) -> Iterator[Frame]:
+    """Read one frame after the other; all must be of one size, with the same fields, and something finite in each.
+
+    Raises
+    ------
+    SequenceError
+        As `read_frame`, and where a frame differs in size or fields from the first or a field has no usable value.
+    """
+    size, fields = None, None
+    for path in paths:
+        frame = read_frame(path)
+        size, fields = size or frame.shape, fields or fields_of(frame)
+        if frame.shape != size:
+            raise SequenceError(f"{path}: expected {extent(size)} pixels as in {paths[0]}, got {extent(frame.shape)}")
+        changes = [f"without {name}" for name in sorted(fields - fields_of(frame))]
+        changes += [f"with {name}" for name in sorted(fields_of(frame) - fields)]
+        if changes:
+            raise SequenceError(f"{path}: expected the fields of {paths[0]}, got a frame {', '.join(changes)}")
+        check_usable(path, frame)
+        yield frame
+
+
+def fields_of(frame: Frame) -> set[str]:
+    """Name the fields that are there, and motion.Z, which is optional too."""
+    return {*frame.present(), *(["motion.Z"] if frame.motion.shape[-1] == 3 else [])}
+
+
+def check_usable(path: Path, frame: Frame) -> None:
+    """Raise `SequenceError` where a whole field is NaN or infinite (depth may be infinite: an empty sky)."""
+    for field, value in frame.present().items():
+        usable = ~np.isnan(value) if field == "depth" else np.isfinite(value)
+        if not usable.any():
+            raise SequenceError(f"{path}: expected finite values in {field}, got none in the whole frame")
+
+
+def write_picture(path: Path, picture: npt.ArrayLike) -> None:
+    """Write a (H, W, 3) linear picture as a plain ``R G B`` EXR file, whole or not at all."""
+    components = np.moveaxis(np.asarray(picture, np.float32), -1, 0)
+    write_channels(path, dict(zip(CHANNEL_NAMES["color"], components, strict=True)))
+
+
+def read_picture(path: Path) -> Plane:
+    """Read the ``R G B`` of an EXR file, whatever else it holds, as (H, W, 3) float32; `SequenceError` without them."""
+    planes = read_channels(path)
+    color = field_of(path, planes, "color")
+    if color is None:
+        raise absent(path, CHANNEL_NAMES["color"], planes)
+    return color
+
+
+def field_of(path: Path, planes: Mapping[str, Plane], field: str) -> Plane | None:
+    """Put `field` together from its channels; None where none is there, an error where only some are."""
+    names = CHANNEL_NAMES[field]
+    found = [planes[name] for name in names if name in planes]
+    if not found:
+        return None
+    needed = names[:2] if field == "motion" else names
+    if not planes.keys() >= set(needed):
+        raise absent(path, needed, planes)
+    return found[0] if len(names) == 1 else np.stack(found, axis=-1)
+
+
+def whole_numbers(path: Path, plane: Plane) -> npt.NDArray[np.uint32]:
+    """Return ids as integers; `SequenceError` unless they are whole numbers that float32 holds exactly."""
+    fits = (plane >= 0) & (plane <= MAX_ID) & (plane == np.floor(plane))
+    if not fits.all():
+        raise SequenceError(f"{path}: expected whole numbers in 0..{MAX_ID} in channel id, got {plane[~fits][0]}")
+    return plane.astype(np.uint32)
+
+
+def absent(path: Path, names: Sequence[str], planes: Mapping[str, Plane]) -> SequenceError:
+    """Make the error for channels that are not there; it lists those that are."""
+    return SequenceError(f"{path}: expected channels {' '.join(names)}, found {' '.join(planes)}")

@@ -1,0 +1,129 @@
+"""The search, with times that are made up: it finds what is faster, keeps the default, rejects what is wrong."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pyopencl as cl
+import pytest
+
+from svgf_cl import Denoiser, Frame, Tuning
+from svgf_cl.bench import tuner
+from svgf_cl.bench.tuner import STEPS, Trial, Tuner
+
+SHAPE = (9, 20)
+DEFAULT = Tuning(vector_width=16, work_group=(64, 1))
+
+
+class FakeDenoiser:
+    """Takes the time that `cost` says, with noise of 10 %, and gives a picture of ones, or of `wrong` tunings zeros."""
+
+    cost: Any
+    wrong: tuple[Tuning, ...] = ()
+    refused: tuple[Tuning, ...] = ()
+    noise = 0.1
+
+    def __init__(self, shape: Any, *, queue: Any, tuning: Tuning) -> None:
+        if tuning in self.refused:
+            raise cl.LogicError("no such work-group")
+        self.tuning = tuning
+
+    def denoise(self, frame: Frame, *, out: np.ndarray) -> None:
+        out[:] = 0 if self.tuning in self.wrong else 1
+
+    def profile(self) -> dict[str, float]:
+        return {"all": type(self).cost(self.tuning) * (1 + self.noise * self.rng.random())}
+
+    rng = np.random.default_rng(0)
+
+
+@pytest.fixture
+def fake(monkeypatch: pytest.MonkeyPatch) -> type[FakeDenoiser]:
+    """A device on which every tuning takes 10 ms."""
+
+    class Fake(FakeDenoiser):
+        rng = np.random.default_rng(0)
+
+        @staticmethod
+        def cost(tuning: Tuning) -> float:
+            return 10.0
+
+    monkeypatch.setattr(tuner, "Denoiser", Fake)
+    monkeypatch.setattr(tuner, "default_tuning", lambda device: DEFAULT)
+    return Fake
+
+
+def by_parts(tuning: Tuning) -> float:
+    """Vectors of 8 in tall groups, rows 256 apart, are the fastest, 51 % of the default's time."""
+    good = (tuning.vector_width == 8, tuning.work_group[1] == 4, tuning.row_alignment == 256)
+    return 10 * 0.8 ** sum(good)
+
+
+def test_finds_the_best_of_every_knob(fake: type[FakeDenoiser], queue: cl.CommandQueue) -> None:
+    fake.cost = staticmethod(by_parts)
+    final = Tuner(SHAPE, queue).search()
+    assert final.is_faster
+    assert final.tuning.vector_width == 8
+    assert final.tuning.work_group[1] == 4
+    assert final.tuning.row_alignment == 256
+    assert final.ratio == pytest.approx(0.8**3, rel=0.1)
+
+
+def test_noise_is_no_reason_to_leave_the_default(fake: type[FakeDenoiser], queue: cl.CommandQueue) -> None:
+    assert not Tuner(SHAPE, queue).search().is_faster
+
+
+def test_what_is_fast_but_wrong_or_refused_is_out(fake: type[FakeDenoiser], queue: cl.CommandQueue) -> None:
+    wrong = Tuning(vector_width=4, work_group=(64, 1))
+    refused = Tuning(vector_width=8, work_group=(64, 1))
+    fake.wrong, fake.refused = (wrong,), (refused,)
+    fake.cost = staticmethod(lambda tuning: 1.0 if tuning.vector_width < 16 else 10.0)
+    search = Tuner(SHAPE, queue)
+    final = search.search()
+    faults = {trial.tuning: trial.fault for trial in search.trials}
+    assert final.tuning.vector_width == 1
+    assert "100.00% of its pixels differ" in faults[wrong]
+    assert "no such work-group" in faults[refused]
+
+
+def test_what_is_hopeless_is_not_timed(fake: type[FakeDenoiser], queue: cl.CommandQueue) -> None:
+    fake.cost = staticmethod(lambda tuning: 100.0 if tuning.vector_width == 1 else 10.0)
+    search = Tuner(SHAPE, queue)
+    search.search()
+    assert [trial.times for trial in search.trials if trial.tuning.vector_width == 1] == [[]]
+
+
+def test_when_time_is_up_the_rest_is_counted(
+    fake: type[FakeDenoiser], queue: cl.CommandQueue, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tuner, "SECONDS", 0.0)
+    search = Tuner(SHAPE, queue)
+    steps = []
+    assert not search.search(lambda: steps.append(1)).ratios
+    assert len(steps) == STEPS
+    assert len(search.trials) == 1
+    assert search.untried > 10
+
+
+@pytest.mark.parametrize(
+    ("ratios", "faster"),
+    [
+        ([0.9] * 10, True),
+        ([0.9] * 8 + [1.5] * 2, True),
+        ([0.9] * 7 + [1.1] * 3, False),
+        ([0.99] * 10, False),
+        ([], False),
+    ],
+)
+def test_a_verdict_wants_a_gain_beyond_noise(ratios: list[float], faster: bool) -> None:
+    assert Trial(DEFAULT, ratios=ratios).is_faster == faster
+
+
+def test_on_the_device_no_tuning_changes_the_picture(queue: cl.CommandQueue, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tuner, "CHOICES", {"vector_width": (4, 8), "row_alignment": (16, 256), "work_group": ((8, 2),)})
+    search = Tuner(SHAPE, queue)
+    search.search()
+    assert len(search.trials) >= 4
+    assert not any(trial.fault for trial in search.trials)
+    assert isinstance(tuner.Denoiser(SHAPE), Denoiser)

@@ -1,0 +1,172 @@
+"""The probe on a real device, on one that cannot be used, and what it remembers."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from svgf_cl.device import probe
+
+KEY = "some device"
+
+POCL_3_0 = """clBuildProgram failed: BUILD_PROGRAM_FAILURE - clBuildProgram failed: BUILD_PROGRAM_FAILURE
+
+Build on <pyopencl.Device 'pthread-AMD EPYC' on 'Portable Computing Language' at 0x55977fd71760>:
+
+error: unknown target CPU 'generic'
+Device pthread-AMD EPYC failed to build the program
+
+(options: -I /tmp/lib/python3.11/site-packages/pyopencl/cl)"""
+
+
+@pytest.fixture
+def memory(monkeypatch, tmp_path):
+    """An empty cache folder."""
+    folder = tmp_path / "cache"
+    monkeypatch.setattr(probe, "cache_folder", lambda: folder)
+    monkeypatch.setattr(probe, "_unanswered", {})
+    return folder
+
+
+@pytest.fixture
+def answers(monkeypatch):
+    """The answers that the next probes give, first first; probing more often fails."""
+    given: list[str | probe.NoAnswerError] = []
+
+    def give(key: str) -> str:
+        answer = given.pop(0)
+        if isinstance(answer, probe.NoAnswerError):
+            raise answer
+        return answer
+
+    monkeypatch.setattr(probe, "_run_apart", give)
+    monkeypatch.setattr(probe, "key", lambda device: KEY)
+    return given
+
+
+@pytest.fixture
+def interpreter(monkeypatch, tmp_path):
+    """A function that puts a shell script in Python's place."""
+
+    def replace(script: str) -> None:
+        path = tmp_path / "python"
+        path.write_text(f"#!/bin/sh\n{script}\n")
+        path.chmod(0o755)
+        monkeypatch.setattr(sys, "executable", str(path))
+
+    return replace
+
+
+def test_working_device(queue, memory):
+    assert probe.run(queue.device) == ""
+    assert probe.reason(queue.device) == ""
+    assert probe.key(queue.device) in (memory / probe.MEMORY).read_text()
+
+
+def test_wrong_numbers(queue, monkeypatch):
+    monkeypatch.setattr(probe, "KERNEL", probe.KERNEL.replace("sqrt", ""))
+    assert probe.run(queue.device) == "computes wrong numbers"
+
+
+def test_broken_compiler(queue, monkeypatch):
+    monkeypatch.setattr(probe, "KERNEL", "#error no such CPU")
+    reason = probe.run(queue.device)
+    assert "no such CPU" in reason
+    assert "\n" not in reason
+
+
+@pytest.mark.parametrize(
+    ("script", "reason"),
+    [
+        ("kill -SEGV $$", "the driver crashes (SIGSEGV): the driver gives no reason"),
+        ("echo 'LLVM ERROR: broken' >&2; kill -ABRT $$", "the driver crashes (SIGABRT): LLVM ERROR: broken"),
+        ("echo 'no such module' >&2; exit 3", "the probe fails: no such module"),
+        ("true", "the probe fails: the driver gives no reason"),
+        ("exec sleep 60", "the driver hangs: no answer within 0.5 s"),
+    ],
+    ids=["segfault", "abort", "exit", "silent", "hang"],
+)
+def test_a_driver_that_misbehaves_gives_no_answer(interpreter, monkeypatch, script, reason):
+    if "sleep" in script:
+        monkeypatch.setattr(probe, "TIMEOUT_SECONDS", 0.5)
+    interpreter(script)
+    with pytest.raises(probe.NoAnswerError) as error:
+        probe._run_apart(KEY)
+    assert str(error.value) == reason
+
+
+def test_a_driver_that_prints_before_and_after_the_answer(interpreter):
+    interpreter(f"""echo hello from the driver; echo '{probe.ANSWER}"says no"'; echo bye""")
+    assert probe._run_apart(KEY) == "says no"
+
+
+def test_a_device_that_only_this_process_lists(queue):
+    with pytest.raises(probe.NoAnswerError, match="does not list"):
+        probe._run_apart("no such device")
+
+
+def test_answers_are_remembered(memory, answers):
+    answers += ["broken", "never asked"]
+    assert probe.reason(None) == probe.reason(None) == "broken"
+
+
+def test_no_answer_is_remembered_only_by_this_process(memory, answers, monkeypatch):
+    answers += [probe.NoAnswerError("hangs"), "", "never asked"]
+    assert probe.reason(None) == probe.reason(None) == "hangs"
+    monkeypatch.setattr(probe, "_unanswered", {})  # another process
+    assert probe.reason(None) == probe.reason(None) == ""
+
+
+def test_refresh_doubts_no_answer_too(memory, answers):
+    answers += [probe.NoAnswerError("hangs"), "", "never asked"]
+    assert probe.reason(None) == "hangs"
+    assert probe.reason(None, refresh=True) == probe.reason(None) == ""
+
+
+def test_refresh_doubts_only_what_is_broken(memory, answers):
+    answers += ["broken", "", "never asked"]
+    assert probe.reason(None) == "broken"
+    assert probe.reason(None, refresh=True) == ""
+    assert probe.reason(None, refresh=True) == ""
+
+
+def test_a_new_driver_is_probed_anew(queue):
+    class Updated:
+        name = queue.device.name
+        platform = queue.device.platform
+        driver_version = queue.device.driver_version + ".1"
+
+    assert probe.key(Updated) != probe.key(queue.device)
+
+
+@pytest.mark.parametrize(
+    "damaged",
+    [b'{"some dev', b"", b"5", b"null", b"[1, 2]", b"\xff\xfe", b'{"some device": 5}', b"[" * 99999],
+    ids=lambda damaged: repr(damaged[:20]),
+)
+def test_a_damaged_memory_is_written_anew(memory, answers, damaged):
+    memory.mkdir()
+    (memory / probe.MEMORY).write_bytes(damaged)
+    answers += ["", "never asked"]
+    assert probe.reason(None) == probe.reason(None) == ""
+
+
+def test_a_memory_that_cannot_be_written_is_not_silent(memory, answers):
+    memory.write_text("a file where the folder should be")
+    answers.append("")
+    with pytest.warns(UserWarning, match="in every run"):
+        assert probe.reason(None) == ""
+
+
+@pytest.mark.parametrize(
+    ("log", "line"),
+    [
+        (POCL_3_0, "error: unknown target CPU 'generic'"),
+        ("clCreateContext failed: OUT_OF_HOST_MEMORY", "clCreateContext failed: OUT_OF_HOST_MEMORY"),
+        ("a\nb\n\n", "b"),
+        ("", "the driver gives no reason"),
+    ],
+)
+def test_summary(log, line):
+    assert probe.summary(log) == line

@@ -1,0 +1,130 @@
+"""Files appear whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from svgf_cl import SequenceError
+from svgf_cl.io.atomic import make_folder, read_json, written_whole
+from svgf_cl.io.display import write_image
+from svgf_cl.io.panels import write_preview
+from tests.disk import files_up_to
+
+PICTURE = np.random.default_rng(3).integers(0, 256, (40, 50, 3), np.uint8)
+
+
+def test_a_file_appears_when_it_is_whole(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    with written_whole(path) as aside:
+        aside.write_text("new")
+        assert aside.parent == tmp_path, "another file system would need a copy, which can stop half way"
+        assert not path.exists()
+    assert path.read_text() == "new"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_what_breaks_off_leaves_the_old_file_and_nothing_else(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    path.write_text("old")
+
+    def break_off() -> None:
+        with written_whole(path) as aside:
+            aside.write_text("ne")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        break_off()
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_an_error_of_the_system_names_the_file(tmp_path: Path) -> None:
+    with (
+        pytest.raises(SequenceError, match=r"a\.txt: cannot be written \(No space left"),
+        written_whole(tmp_path / "a.txt"),
+    ):
+        raise OSError(28, "No space left on device")
+
+
+def test_an_error_of_the_system_comes_before_any_work(tmp_path: Path) -> None:
+    with (
+        pytest.raises(SequenceError, match=r"a\.txt: cannot be written \(No such file"),
+        written_whole(tmp_path / "nowhere" / "a.txt"),
+    ):
+        pytest.fail("there is nothing to write to")
+
+
+FULL = {
+    "a.txt": lambda path: _write_text(path),
+    "a.png": lambda path: write_image(path, PICTURE),
+    "a.webp": lambda path: write_image(path, PICTURE),
+    "preview.webp": lambda path: write_preview(path, [PICTURE, PICTURE[::-1]]),
+}
+
+
+def _write_text(path: Path) -> None:
+    with written_whole(path) as aside:
+        aside.write_text("text " * 1000, encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", FULL)
+def test_a_full_disk_is_reported_and_leaves_the_old_file(name: str, tmp_path: Path) -> None:
+    path = tmp_path / name
+    FULL[name](path)
+    old = path.read_bytes()
+    for limit in (0, 100, len(old) // 2, len(old) - 1):
+        with files_up_to(limit), pytest.raises(SequenceError, match=rf"{name}: cannot be written \(File too large\)"):
+            FULL[name](path)
+        assert path.read_bytes() == old
+        assert list(tmp_path.iterdir()) == [path]
+    with files_up_to(len(old)):
+        FULL[name](path)
+    assert path.read_bytes() == old
+
+
+def test_what_a_killed_process_left_is_cleared_away_and_what_others_write_is_not(tmp_path: Path) -> None:
+    ended = subprocess.run([sys.executable, "-c", "import os; print(os.getpid())"], capture_output=True, check=True)
+    here, dead = socket.gethostname(), int(ended.stdout)
+    gone = tmp_path / f".a b.exr.{here}-{dead}.tmp"
+    others = (f".a.exr.{here}-{os.getppid()}.tmp", f".a.exr.elsewhere-{dead}.tmp", f"a.exr.{here}-{dead}.tmp", ".tmp")
+    kept = [tmp_path / name for name in others]
+    for path in (gone, *kept):
+        path.touch()
+    make_folder(tmp_path)
+    assert sorted(tmp_path.iterdir()) == sorted(kept)
+
+
+def test_json_that_nobody_meant_is_no_more_than_wrong(tmp_path: Path) -> None:
+    path = tmp_path / "a.json"
+    for content in (b"", b"{", b"\xff\xfe\xfa", b"[" * 100_000, b'{"a":' * 100_000):
+        path.write_bytes(content)
+        with pytest.raises(ValueError, match=r".+"):
+            read_json(path)
+    path.write_text("[1, 2]")
+    assert read_json(path) == [1, 2]
+
+
+def test_folders_are_made_with_their_parents(tmp_path: Path) -> None:
+    folder = tmp_path / "a" / "b"
+    assert make_folder(folder) == folder
+    assert make_folder(folder).is_dir()
+
+
+def test_what_cannot_be_a_folder_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    for path in (tmp_path / "file", tmp_path / "file" / "below"):
+        with pytest.raises(SequenceError, match="cannot be made a folder"):
+            make_folder(path)
+
+
+def test_a_folder_that_is_read_only_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "access", lambda *_: False)  # root may write anywhere
+    with pytest.raises(SequenceError, match="read-only"):
+        make_folder(tmp_path)

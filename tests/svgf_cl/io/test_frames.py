@@ -1,0 +1,241 @@
+"""Frames and pictures survive the way to an EXR file and back; what does not fit is refused with the file's name."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from svgf_cl import Frame, FrameError, SequenceError
+from svgf_cl.frame import CARRIED, CHANNELS
+from svgf_cl.io.exr import read_channels, write_channels
+from svgf_cl.io.frames import (
+    CHANNEL_NAMES,
+    MAX_ID,
+    check_leftovers,
+    find_frames,
+    find_numbered,
+    frame_number,
+    frame_path,
+    is_picture,
+    kept_frame,
+    read_frame,
+    read_picture,
+    read_sequence,
+    write_frame,
+    write_picture,
+)
+from tests.disk import unprivileged
+
+
+def floats(*shape: int) -> st.SearchStrategy[np.ndarray]:
+    """Arrays of any float32 at all: infinities, NaN, subnormals, negative zero."""
+    return hnp.arrays(np.float32, shape, elements=st.floats(width=32))
+
+
+@st.composite
+def frames(draw: st.DrawFn) -> Frame:
+    h, w = draw(st.integers(1, 5)), draw(st.integers(1, 5))
+    fields = {"normal": floats(h, w, 3), "depth": floats(h, w), "motion": floats(h, w, draw(st.sampled_from((2, 3))))}
+    fields |= {name: floats(h, w, 3) for name in draw(st.sets(st.sampled_from(("albedo", "emission"))))}
+    signals = draw(st.sampled_from((("color",), ("direct", "indirect"), ("color", "direct", "indirect"))))
+    fields |= {name: floats(h, w, 3) for name in signals}
+    if draw(st.booleans()):
+        fields["id"] = hnp.arrays(np.uint32, (h, w), elements=st.integers(0, MAX_ID))
+    return Frame(**{name: draw(value) for name, value in fields.items()})
+
+
+def plain_frame(h: int = 3, w: int = 4, **fields: object) -> Frame:
+    rng = np.random.default_rng(7)
+    values = {name: rng.random((h, w, 3), np.float32) for name in ("color", "normal", "motion")}
+    return Frame(**{**values, "depth": np.full((h, w), np.inf, np.float32), **fields})
+
+
+@given(frames())
+@settings(deadline=None, max_examples=40)
+def test_a_frame_comes_back_bit_for_bit(frame: Frame) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        path = frame_path(Path(folder), 0)
+        write_frame(path, frame)
+        back = read_frame(path).present()
+    assert back.keys() == frame.present().keys()
+    for name, value in frame.present().items():
+        assert back[name].dtype == value.dtype
+        np.testing.assert_array_equal(back[name], value, strict=True)
+
+
+@given(floats(4, 3, 3))
+@settings(deadline=None, max_examples=20)
+def test_a_picture_comes_back_bit_for_bit(picture: np.ndarray) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "out.exr"
+        write_picture(path, picture)
+        assert set(read_channels(path)) == {"R", "G", "B"}
+        np.testing.assert_array_equal(read_picture(path), picture, strict=True)
+
+
+def test_a_picture_can_be_read_out_of_a_frame(tmp_path: Path) -> None:
+    frame = plain_frame()
+    write_frame(tmp_path / "frame.0000.exr", frame)
+    np.testing.assert_array_equal(read_picture(tmp_path / "frame.0000.exr"), frame.color)
+
+
+def test_frames_are_sorted_by_number_and_nothing_else_is_a_frame(tmp_path: Path) -> None:
+    for name in ("frame.10000.exr", "frame.9998.exr", "frame.9999.exr", "reference.0002.exr", "frame.0003.png"):
+        (tmp_path / name).touch()
+    wanted = ["frame.9998.exr", "frame.9999.exr", "frame.10000.exr"]
+    assert [path.name for path in find_frames([tmp_path])] == wanted
+    assert find_numbered(tmp_path, "reference") == [tmp_path / "reference.0002.exr"]
+    assert [frame_number(tmp_path / name) for name in wanted] == [9998, 9999, 10000]
+    assert frame_number(Path("view.exr")) is None
+
+
+def test_a_gap_in_a_folder_is_named(tmp_path: Path) -> None:
+    for number in (3, 4, 7):
+        frame_path(tmp_path, number).touch()
+    with pytest.raises(SequenceError, match=r"frame\.0005\.exr: expected this frame between frame\.0004\.exr and"):
+        find_frames([tmp_path])
+    files = [frame_path(tmp_path, 3), frame_path(tmp_path, 7)]
+    assert find_frames(files) == files, "chosen by hand"
+
+
+def test_leftovers_are_named(tmp_path: Path) -> None:
+    written = [frame_path(tmp_path, 0), tmp_path / "still.0000.png"]
+    check_leftovers(tmp_path / "nowhere", written)
+    for path in (*written, tmp_path / "photo.0007.exr", tmp_path / "preview.webp"):
+        path.touch()
+    check_leftovers(tmp_path, written)
+    for name in ("frame.0001.exr", "frame.0007.png", "reference.0000.exr", "still.0001.png"):
+        (tmp_path / name).touch()
+        with pytest.raises(SequenceError, match=f"{name}: left by an earlier run"):
+            check_leftovers(tmp_path, written)
+        (tmp_path / name).unlink()
+
+
+def test_files_are_taken_as_given(tmp_path: Path) -> None:
+    path = tmp_path / "any name.exr"
+    path.touch()
+    assert find_frames([path]) == [path]
+
+
+def test_an_empty_or_missing_folder_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(SequenceError, match=r"expected files named frame\.0000\.exr"):
+        find_frames([tmp_path])
+    with pytest.raises(SequenceError, match="nowhere: expected a file or a folder, found nothing"):
+        find_frames([tmp_path / "nowhere"])
+
+
+def test_a_great_id_is_refused_and_leaves_no_file(tmp_path: Path) -> None:
+    with pytest.raises(SequenceError, match="expected ids up to 16777216"):
+        write_frame(tmp_path / "frame.0000.exr", plain_frame(id=np.full((3, 4), MAX_ID + 1, np.uint32)))
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("value", [-1.0, 0.5, np.nan, np.inf, 2.0 * MAX_ID])
+def test_an_id_that_is_no_whole_number_is_refused(tmp_path: Path, value: float) -> None:
+    path = tmp_path / "frame.0000.exr"
+    write_frame(path, plain_frame(id=np.ones((3, 4), np.uint32)))
+    write_channels(path, {**read_channels(path), "id": np.full((3, 4), value, np.float32)})
+    with pytest.raises(SequenceError, match=r"frame\.0000\.exr: expected whole numbers"):
+        read_frame(path)
+
+
+@pytest.mark.parametrize(
+    "channel", [names[-1] for names in CHANNEL_NAMES.values() if names[-1] not in ("id", "motion.Z", "roughness")]
+)
+def test_an_absent_channel_is_named_with_those_found(tmp_path: Path, channel: str) -> None:
+    path = tmp_path / "frame.0000.exr"
+    optional = ("albedo", "emission", "direct", "indirect", *CARRIED)
+    fields = {name: np.ones((3, 4, *filter(None, CHANNELS[name])), np.float32) for name in optional}
+    write_frame(path, plain_frame(**fields))
+    planes = read_channels(path)
+    del planes[channel]
+    write_channels(path, planes)
+    with pytest.raises(SequenceError, match=rf"frame\.0000\.exr: expected channels .*{channel}.*, found .*") as error:
+        read_frame(path)
+    assert all(name in str(error.value) for name in planes)
+
+
+def test_a_frame_without_any_radiance_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "frame.0000.exr"
+    write_frame(path, plain_frame())
+    planes = {name: plane for name, plane in read_channels(path).items() if name not in CHANNEL_NAMES["color"]}
+    write_channels(path, planes)
+    with pytest.raises(SequenceError, match=r"frame\.0000\.exr: Frame\.color: expected an array.*channels found"):
+        read_frame(path)
+    with pytest.raises(SequenceError, match="expected channels R G B, found"):
+        read_picture(path)
+
+
+def test_frames_of_a_sequence_have_one_size(tmp_path: Path) -> None:
+    write_frame(frame_path(tmp_path, 0), plain_frame(3, 4))
+    write_frame(frame_path(tmp_path, 1), plain_frame(4, 4))
+    with pytest.raises(SequenceError, match=r"frame\.0001\.exr: expected 4x3 pixels as in .*0000\.exr, got 4x4"):
+        list(read_sequence(find_frames([tmp_path])))
+
+
+def test_frames_of_a_sequence_have_the_same_fields(tmp_path: Path) -> None:
+    radiance = np.ones((3, 4, 3), np.float32)
+    flat = plain_frame(albedo=radiance)
+    flat = replace(flat, motion=np.ascontiguousarray(flat.motion[..., :2]))
+    write_frame(frame_path(tmp_path, 0), flat)
+    write_frame(frame_path(tmp_path, 1), replace(flat, albedo=None, emission=radiance))
+    with pytest.raises(SequenceError, match=r"1\.exr: expected .*0000\.exr, got a frame without albedo, with emission"):
+        list(read_sequence(find_frames([tmp_path])))
+    write_frame(frame_path(tmp_path, 1), plain_frame(albedo=radiance))
+    with pytest.raises(SequenceError, match=r"0001\.exr: .* got a frame with motion\.Z"):
+        list(read_sequence(find_frames([tmp_path])))
+
+
+@pytest.mark.parametrize("field", ["color", "depth", "normal"])
+def test_a_field_of_nothing_but_nan_is_refused(tmp_path: Path, field: str) -> None:
+    frame = plain_frame()
+    write_frame(frame_path(tmp_path, 0), plain_frame(**{field: np.full_like(getattr(frame, field), np.nan)}))
+    with pytest.raises(SequenceError, match=rf"0000\.exr: expected finite values in {field}"):
+        list(read_sequence(find_frames([tmp_path])))
+
+
+def test_a_sequence_of_nothing_but_sky_is_fine(tmp_path: Path) -> None:
+    write_frame(frame_path(tmp_path, 0), plain_frame())
+    assert len(list(read_sequence(find_frames([tmp_path])))) == 1
+
+
+def test_an_inconsistent_frame_is_not_written(tmp_path: Path) -> None:
+    with pytest.raises(FrameError, match=r"Frame\.albedo"):
+        write_frame(tmp_path / "frame.0000.exr", plain_frame(albedo=np.ones((9, 9, 3), np.float32)))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_frame_is_kept_for_what_it_was_made_from(tmp_path: Path) -> None:
+    path, frame = tmp_path / "frame.0000.exr", plain_frame()
+    assert kept_frame(path, "this") is None
+    write_frame(path, frame)
+    assert kept_frame(path, "") is None
+    write_frame(path, frame, "this")
+    assert kept_frame(path, "that") is None
+    kept = kept_frame(path, "this")
+    for name, value in frame.present().items():
+        np.testing.assert_array_equal(kept.present()[name], value, strict=True)
+    path.write_bytes(path.read_bytes()[:-1])
+    assert kept_frame(path, "this") is None
+
+
+def test_a_picture_is_known_bit_by_bit(tmp_path: Path) -> None:
+    path, picture = tmp_path / "a.exr", np.array([[[0.0, np.nan, 1.0]]], np.float32)
+    assert not is_picture(path, picture)
+    write_picture(path, picture)
+    assert is_picture(path, picture)
+    assert not is_picture(path, -picture), "the sign of zero is a bit too"
+    path.write_bytes(path.read_bytes()[:-1])
+    assert not is_picture(path, picture)
+
+
+def test_a_folder_behind_a_closed_door_is_named(tmp_path: Path) -> None:
+    with unprivileged(tmp_path), pytest.raises(SequenceError, match="cannot be read \\(Permission denied\\)"):
+        find_frames([tmp_path])

@@ -1,0 +1,67 @@
+"""The measure of accuracy sees what it should: a wrong kernel by name, and nothing where all is right."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from svgf_cl import Denoiser, Settings
+from svgf_cl.filters.pipeline import Inputs, pipeline
+from svgf_cl.oracle import svgf as reference
+from svgf_cl.oracle.accuracy import DECISION, SCALE_SHARE, Deviation, deviations, relative_error, worst
+from tests.frames import SPLIT, TINY, bumpy_sequence
+
+
+@pytest.mark.parametrize("taa", [False, True])
+def test_covers_every_stage_and_the_result(taa: bool) -> None:
+    frames = bumpy_sequence(SPLIT, count=2, shape=TINY)
+    den = Denoiser(TINY, settings=Settings(taa=taa))
+    den.denoise(frames[0])
+    found = deviations(frames, Settings(taa=taa))
+    assert set(found) == {*den.stages, "out"}
+    assert {deviation.kernel for deviation in found.values()} == {
+        entry.kernel for entry in pipeline(Inputs.of(frames[0]), den.settings)
+    }
+
+
+@pytest.mark.parametrize("kernel", ["temporal", "atrous"])
+def test_a_wrong_kernel_shows_in_its_own_stages_alone(kernel: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    right = getattr(reference, kernel)
+    stages = {"temporal": {"accumulated", "mean", "moment_variance"}, "atrous": {"level_1", "level_1_variance"}}
+
+    def wrong(color, *rest):
+        return right(1.01 * color, *rest)
+
+    monkeypatch.setattr(reference, kernel, wrong)
+    found = deviations(bumpy_sequence(SPLIT, shape=TINY), Settings(iterations=1))
+    assert {name for name, deviation in found.items() if deviation.decided_otherwise > 0.1} <= stages[kernel]
+    assert any(deviation.decided_otherwise > 0.5 for deviation in found.values())
+
+
+def test_error_is_relative_to_the_value_or_to_the_mean() -> None:
+    expected = np.array([0.0, 1.0, 2.0, -1.0])
+    scale = SCALE_SHARE * 1.0
+    assert_allclose(relative_error(expected + 1e-6, expected), 1e-6 / (np.abs(expected) + scale))
+
+
+def test_all_zero_is_right_or_wholly_wrong() -> None:
+    assert relative_error(np.zeros(3), np.zeros(3)).max() == 0
+    assert relative_error(np.ones(3), np.zeros(3)).min() >= DECISION
+
+
+def test_what_was_decided_otherwise_is_set_aside() -> None:
+    found = Deviation.of(
+        "taa", error=np.array([0.0, 1e-6, 3e-6, 1.0, np.nan]), size=np.array([2.0, 0.1, 1.0, 1.0, 1.0])
+    )
+    assert found == Deviation("taa", absolute=3e-6, relative=1e-6 / 0.1, ulps=1e-6 * 2**27, decided_otherwise=0.4)
+
+
+def test_an_error_in_the_last_place_is_one_ulp() -> None:
+    size = np.array([1e-20, 1.0, 1.5, 3e38])
+    assert Deviation.of("taa", np.spacing(size.astype(np.float32)).astype(np.float64), size).ulps == 1
+
+
+def test_the_worst_of_all_frames_counts() -> None:
+    frames = [Deviation("taa", 1, 4, 5, 0.0), Deviation("taa", 2, 3, 6, 0.5)]
+    assert worst(frames) == Deviation("taa", 2, 4, 6, 0.25)
