@@ -5,13 +5,14 @@
 //   d = l(c) - M_h,  M = M_h + a d,  V = (1 - a) (V_h + a d^2)
 //
 // in   motion, guide, illumination (of this frame); guide, colour history, moments (of the previous one)
-// out  accumulated: c;  moments: N, then M and V of each signal
+// out  accumulated: c;  moments: N, M, V
 // Schied et al. 2017, sections 4.1 and 4.2. M and V are the paper's raw moments rewritten (M = mu1, V = mu2 - mu1^2) so
 // that nothing cancels for bright, steady pixels.
 
 #define FAR 1e6f           // a motion out of every image, yet a safe integer
 #define NOWHERE (1 << 24)  // a position beyond every image
 #define SMOOTH 4           // pixels by which motion may differ within a vector that is read as a whole
+#define ENOUGH 0.01f       // sum of weights of a footprint from which it is a history
 
 // What a tap of the previous frame is held against. The position p' is kept as a whole pixel and a fraction of motion:
 // added up in float32 a fraction would lose bits to the column's number.
@@ -44,7 +45,7 @@ INLINE Expected expect(const int4 size, int x, int y, __global const float *moti
                        float depth_threshold) {
     const int here = at(size, x, y);
     const Color m = load_motion(size, x, y, motion);
-    const floatv depth = load(guide + DEPTH * size.w + here) + m.channel[2];
+    const floatv depth = load(SHARED_PLANE(size, guide, GUIDE_DEPTH) + here) + m.channel[2];
     const intv good = isfinite(m.channel[0]) & isfinite(m.channel[1]) & isfinite(m.channel[2]);
     Expected e;
     const floatv mx = where(good, clamp(m.channel[0], -FAR, FAR), (floatv)(FAR));
@@ -54,11 +55,11 @@ INLINE Expected expect(const int4 size, int x, int y, __global const float *moti
     e.fx = mx - floor(mx);
     e.fy = my - floor(my);
     e.depth = depth;
-    e.gradient = depth_gradient(guide + DEPTH * size.w, size.z, here);
+    e.gradient = depth_gradient(SHARED_PLANE(size, guide, GUIDE_DEPTH), size.z, here);
     e.tolerance = depth_threshold * e.depth + fabs(e.gradient.x) + fabs(e.gradient.y);
-    UNROLLED_FOR(k, 3) e.normal[k] = load_normal(normals(size, guide) + k * size.w + here);
+    UNROLLED_FOR(k, 3) e.normal[k] = load_normal(normal_plane(size, guide, k) + here);
 #if HAS_ID
-    e.id = load_int((__global const int *)guide + ID * size.w + here);
+    e.id = load_int((__global const int *)SHARED_PLANE(size, guide, GUIDE_ID) + here);
 #endif
     return e;
 }
@@ -67,7 +68,7 @@ INLINE Expected expect(const int4 size, int x, int y, __global const float *moti
 // side in a box a little larger than one of them, which is read vector by vector; lanes whose footprint a tap is not in
 // ignore it. Where motion is not smooth each lane gathers from a footprint of its own.
 typedef struct {
-    Places at;          // top left of the box
+    Places corner;      // top left of the box
     intv x, y;          // top left of a lane's footprint in it
     int columns, rows;  // of the box
 } Box;
@@ -80,34 +81,34 @@ INLINE Box box_of(const int4 size, int x, int y, intv left, intv top, intv hit, 
     const int least_x = LEAST(select(most, dx, used)), spread_x = GREATEST(select(-most, dx, used)) - least_x;
     const int least_y = LEAST(select(most, dy, used)), spread_y = GREATEST(select(-most, dy, used)) - least_y;
     Box box;
-    box.at.adjacent = spread_x <= SMOOTH && spread_y <= SMOOTH;
+    box.corner.adjacent = spread_x <= SMOOTH && spread_y <= SMOOTH;
     box.columns = box.rows = extent;
     box.x = box.y = (intv)(0);
-    if (box.at.adjacent) {
-        box.at.lanes = at_lanes(size, x + least_x + LANES, (intv)(y + least_y));
+    if (box.corner.adjacent) {
+        box.corner.lanes = at_lanes(size, x + least_x + LANES, (intv)(y + least_y));
         box.x = dx - least_x;
         box.y = dy - least_y;
         box.columns += spread_x;
         box.rows += spread_y;
     } else {
-        box.at.lanes = at_lanes(size, within(-extent, size.x, left), within(-extent, size.y, top));
+        box.corner.lanes = at_lanes(size, within(-extent, size.x, left), within(-extent, size.y, top));
     }
     return box;
 }
 
-INLINE Past read_past(const int4 size, Places at, __global const float *guide, __global const light_t *history,
+INLINE Past read_past(const int4 size, Places places, __global const float *guide, __global const light_t *history,
                       __global const light_t *moments) {
     Past p;
-    p.depth = fetch(guide + DEPTH * size.w, at);
-    UNROLLED_FOR(k, 3) p.normal[k] = fetch_normal(normals(size, guide) + k * size.w, at);
+    p.depth = fetch(SHARED_PLANE(size, guide, GUIDE_DEPTH), places);
+    UNROLLED_FOR(k, 3) p.normal[k] = fetch_normal(normal_plane(size, guide, k), places);
 #if HAS_ID
-    p.id = fetch_int((__global const int *)guide + ID * size.w, at);
+    p.id = fetch_int((__global const int *)SHARED_PLANE(size, guide, GUIDE_ID), places);
 #endif
-    p.length = fetch_light(moments + LENGTH * size.w, at);
+    p.length = fetch_light(SHARED_PLANE(size, moments, MOMENTS_LENGTH), places);
     UNROLLED_FOR(s, SIGNALS) {
-        UNROLLED_FOR(k, 3) p.color[s][k] = fetch_light(history + (3 * s + k) * size.w, at);
-        p.mean[s] = fetch_light(moments + (MOMENTS + 2 * s) * size.w, at);
-        p.variance[s] = fetch_variance(moments + (MOMENTS + 2 * s + 1) * size.w, at);
+        UNROLLED_FOR(k, 3) p.color[s][k] = fetch_light(PLANE(size, history, ILLUMINATION_COLOR, s, k), places);
+        p.mean[s] = fetch_light(PLANE(size, moments, MOMENTS_MEAN, s, 0), places);
+        p.variance[s] = fetch_variance(PLANE(size, moments, MOMENTS_VARIANCE, s, 0), places);
     }
     return p;
 }
@@ -136,9 +137,9 @@ INLINE History no_history(void) {
 }
 
 // Mixes in one tap. The variance of a mixture is the mean of the variances plus the spread of the means.
-INLINE void add_tap(History *h, Past tap, floatv weight) {
-    h->weight += weight;
-    const floatv share = where(h->weight > 0.0f, weight / h->weight, (floatv)(0.0f));
+INLINE void add_past(History *h, Past tap, floatv w) {
+    h->weight += w;
+    const floatv share = where(h->weight > 0.0f, w / h->weight, (floatv)(0.0f));
     h->length += share * (tap.length - h->length);
     UNROLLED_FOR(s, SIGNALS) {
         UNROLLED_FOR(k, 3) h->color[s][k] += share * (tap.color[s][k] - h->color[s][k]);
@@ -165,10 +166,10 @@ INLINE History footprint(const int4 size, Expected e, Box box, float normal_thre
     History h = no_history();
     for (int j = 0; j < box.rows; ++j) {
         for (int i = 0; i < box.columns; ++i) {
-            const Past tap = read_past(size, beside(box.at, i + j * size.z), guide, history, moments);
+            const Past tap = read_past(size, beside(box.corner, i + j * size.z), guide, history, moments);
             const floatv dx = to_float(i - box.x) - e.fx, dy = to_float(j - box.y) - e.fy;
             const floatv bilinear = max(1.0f - fabs(dx), (floatv)(0.0f)) * max(1.0f - fabs(dy), (floatv)(0.0f));
-            add_tap(&h, tap, where(consistent(e, tap, dx, dy, normal_threshold), bilinear, (floatv)(0.0f)));
+            add_past(&h, tap, where(consistent(e, tap, dx, dy, normal_threshold), bilinear, (floatv)(0.0f)));
         }
     }
     return h;
@@ -181,12 +182,12 @@ INLINE History surroundings(const int4 size, Expected e, floatv nx, floatv ny, B
     History h = no_history();
     for (int j = 0; j < box.rows; ++j) {
         for (int i = 0; i < box.columns; ++i) {
-            const Past tap = read_past(size, beside(box.at, i + j * size.z), guide, history, moments);
-            const intv column = i - box.x, row = j - box.y;
-            const intv near = (column >= 0) & (column < 3) & (row >= 0) & (row < 3);
-            const floatv dx = to_float(column - 1) + nx - e.fx, dy = to_float(row - 1) + ny - e.fy;
+            const Past tap = read_past(size, beside(box.corner, i + j * size.z), guide, history, moments);
+            const intv across = i - box.x, down = j - box.y;
+            const intv near = (across >= 0) & (across < 3) & (down >= 0) & (down < 3);
+            const floatv dx = to_float(across - 1) + nx - e.fx, dy = to_float(down - 1) + ny - e.fy;
             const intv same = consistent(e, tap, dx, dy, normal_threshold);
-            add_tap(&h, tap, where(near & same, (floatv)(1.0f), (floatv)(0.0f)));
+            add_past(&h, tap, where(near & same, (floatv)(1.0f), (floatv)(0.0f)));
         }
     }
     return h;
@@ -203,11 +204,11 @@ KERNEL temporal(const int4 size, const float alpha_color, const float alpha_mome
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
     const Expected e = expect(size, x, y, motion, guide, depth_threshold);
-    const intv hit = load(guide + DEPTH * size.w + here) > 0.0f;
+    const intv hit = load(SHARED_PLANE(size, guide, GUIDE_DEPTH) + here) > 0.0f;
 
-    const Box corner = box_of(size, x, y, e.left, e.top, hit, 2);
-    History h = footprint(size, e, corner, normal_threshold, previous_guide, history, previous_moments);
-    const intv lost = hit & (h.weight <= 0.01f);
+    const Box footprints = box_of(size, x, y, e.left, e.top, hit, 2);
+    History h = footprint(size, e, footprints, normal_threshold, previous_guide, history, previous_moments);
+    const intv lost = hit & (h.weight <= ENOUGH);
     if (any_lane(lost)) {  // thin geometry
         const floatv nx = floor(e.fx + 0.5f), ny = floor(e.fy + 0.5f);
         const Box around = box_of(size, x, y, e.left + to_int(nx) - 1, e.top + to_int(ny) - 1, lost, 3);
@@ -216,23 +217,23 @@ KERNEL temporal(const int4 size, const float alpha_color, const float alpha_mome
         h = select_history(lost, nine, h);
     }
 
-    const intv known = hit & (h.weight > 0.01f);
-    const floatv length = where(known, min(h.length + 1.0f, (floatv)(MAX_LENGTH)), where(hit, (floatv)(1.0f), (floatv)(0.0f)));
-    const floatv newest = 1.0f / max(length, (floatv)(1.0f));
+    const intv known = hit & (h.weight > ENOUGH);
+    const floatv fresh = where(hit, (floatv)(1.0f), (floatv)(0.0f));
+    const floatv frames = where(known, min(h.length + 1.0f, (floatv)(MAX_LENGTH)), fresh);
+    const floatv newest = 1.0f / max(frames, (floatv)(1.0f));
     const floatv a_color = max(newest, (floatv)(alpha_color)), a_moments = max(newest, (floatv)(alpha_moments));
-    store_light(length, moments + LENGTH * size.w + here);
+    store_light(frames, SHARED_PLANE(size, moments, MOMENTS_LENGTH) + here);
     UNROLLED_FOR(s, SIGNALS) {
         floatv c[3];
         UNROLLED_FOR(k, 3) {
-            const int plane = (3 * s + k) * size.w;
-            c[k] = load_light(illumination + plane + here);
+            c[k] = load_light(PLANE(size, illumination, ILLUMINATION_COLOR, s, k) + here);
             const floatv blended = h.color[s][k] + a_color * (c[k] - h.color[s][k]);
-            store_light(where(known, blended, c[k]), accumulated + plane + here);
+            store_light(where(known, blended, c[k]), PLANE(size, accumulated, ILLUMINATION_COLOR, s, k) + here);
         }
-        const floatv l = c[LUMINANCE], d = l - h.mean[s];
+        const floatv l = c[LIGHT_LUMINANCE], d = l - h.mean[s];
         const floatv mean = where(known, h.mean[s] + a_moments * d, l);
         const floatv variance = where(known, (1.0f - a_moments) * (h.variance[s] + a_moments * d * d), (floatv)(0.0f));
-        store_light(mean, moments + (MOMENTS + 2 * s) * size.w + here);
-        store_variance(variance, moments + (MOMENTS + 2 * s + 1) * size.w + here);
+        store_light(mean, PLANE(size, moments, MOMENTS_MEAN, s, 0) + here);
+        store_variance(variance, PLANE(size, moments, MOMENTS_VARIANCE, s, 0) + here);
     }
 }

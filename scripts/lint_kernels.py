@@ -1,4 +1,6 @@
-"""Checks every kernel with clang, for each combination of the macros that it reads; needs no OpenCL device."""
+"""Checks every kernel with clang, for each combination of the macros that it reads, and how kernels are written with
+clang-format; needs no OpenCL device.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +11,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 from svgf_cl.device import programs
 
@@ -30,7 +33,13 @@ VARIANTS = (
 )
 # -Wundef: a macro that a kernel reads and this table lacks is an error, never a silent 0.
 LANGUAGE = ("-x", "cl", "-cl-std=CL1.2", "-target", "spir64", "-Xclang", "-finclude-default-header")
-WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wundef", "-Werror")
+WARNINGS = (
+    *("-Wall", "-Wextra", "-Wconversion", "-Wundef", "-Wshadow", "-Wcast-qual", "-Wdouble-promotion"),
+    *("-Wunreachable-code", "-Wextra-semi-stmt", "-Werror"),
+)
+
+ROOT = Path(__file__).resolve().parent.parent
+FORMATTED = ("kernels/*.cl", "kernels/*.clh", "svgf_cl/bench/*.cl")
 
 
 def combinations(source: str) -> Iterator[dict[str, int]]:
@@ -49,6 +58,17 @@ def check(stage: str, macros: dict[str, int]) -> str:
     return f"kernels/{stage}.cl with {' '.join(defines)}:\n{clang.stderr}" if clang.returncode else ""
 
 
+def unformatted() -> str:
+    """Clang-format's complaints, empty if there are none."""
+    # That beside this Python is of the version that pyproject.toml asks for; each lays things out in a way of its own.
+    clang_format = shutil.which("clang-format", path=str(Path(sys.executable).parent))
+    if clang_format is None:
+        return "clang-format is missing beside this Python; install the project's dev extra"
+    files = [str(file) for pattern in FORMATTED for file in sorted(ROOT.glob(pattern))]
+    command = [clang_format, "--dry-run", "-Werror", *files]
+    return subprocess.run(command, text=True, capture_output=True).stderr
+
+
 def main() -> int:
     if shutil.which("clang") is None:
         print("lint_kernels: clang is missing; install it, e.g. apt-get install clang", file=sys.stderr)
@@ -56,8 +76,9 @@ def main() -> int:
     jobs = [(stage, macros) for stage in programs.stages() for macros in combinations(programs.source(stage))]
     with ThreadPoolExecutor() as pool:
         complaints = list(filter(None, pool.map(lambda job: check(*job), jobs)))
-    print(*complaints[:3], f"{len(jobs)} kernel variants checked, {len(complaints)} with errors", sep="\n")
-    return 1 if complaints else 0
+    layout = unformatted()
+    print(*complaints[:3], layout, f"{len(jobs)} kernel variants checked, {len(complaints)} with errors", sep="\n")
+    return 1 if complaints or layout else 0
 
 
 if __name__ == "__main__":

@@ -1,7 +1,9 @@
 // What a device can do at best, for the roofline: copy memory, load from the nearest cache, and multiply and add.
 //
-//   copy       target[i] = source[i], all of it `repeats` times;  item g takes the vectors g * first + k * step, k < count
-//   load       CHAINS sums of vectors from as many streams, each `offset` floats off where a vector begins, `count` times
+//   copy       target[i] = source[i], all of it `repeats` times;  item g takes the vectors g * first + k * step,
+//              k < count
+//   load       CHAINS sums of vectors from as many streams, each `offset` floats off where a vector begins,
+//              `count` times
 //   multiply   CHAINS independent sums a := a * b + c per lane, `count` times
 //
 // in   source;  out  target
