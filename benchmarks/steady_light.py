@@ -9,8 +9,7 @@ import pyopencl as cl
 from numpy.typing import NDArray
 
 from svgf_cl import Denoiser, Frame, Settings
-from svgf_cl.oracle.svgf import Reference
-from svgf_cl.oracle.taps import REC709
+from svgf_cl.oracle.svgf import Oracle
 
 SHAPE = (36, 64)
 FRAMES = 24
@@ -42,7 +41,7 @@ def raw_moments(frames: Iterable[Frame], alpha: float) -> NDArray[np.float32]:
     first: NDArray[np.float32] = np.zeros(SHAPE, np.float32)
     second = first
     for age, frame in enumerate(frames):
-        luminance = frame.color @ REC709.astype(np.float32)
+        luminance = frame.color @ np.array(LUMINANCE, np.float32)
         share = np.float32(max(alpha, 1 / (age + 1)))
         first = first + share * (luminance - first)
         second = second + share * (luminance * luminance - second)
@@ -60,7 +59,7 @@ def kept_variance(denoiser: Denoiser, frames: Iterable[Frame]) -> NDArray[np.flo
 
 def exact_variance(frames: Iterable[Frame]) -> NDArray[np.float64]:
     """Variance as the oracle keeps it, (H, W)."""
-    oracle = Reference(SHAPE)
+    oracle = Oracle(SHAPE, Settings())
     for frame in frames:
         oracle.denoise(frame)
     variance: NDArray[np.float64] = oracle.stages["moment_variance"][0]

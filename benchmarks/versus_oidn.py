@@ -118,7 +118,7 @@ def versus_oidn(
     PYOPENCL_CTX chooses its device. OIDN gets as many CPU threads as that device has, or all where it is no CPU.
     The truth takes a minute or two to render the first time, and is kept in the user's cache folder.
     """
-    found = compared(parse_size(size), parse_settings(set_), rounds, clean_aux=clean_aux)
+    found = compared(parse_size(size), parse_settings(Settings.name, set_), rounds, clean_aux=clean_aux)
     device = devices.choose(devices.list_devices())
     for table in [*found.tables, bar_table(found.results, {device.selector: device.platform})]:
         print(f"{table.title}:\n\n{markdown(table)}") if markdown_ else show(table.title, table.columns, table.rows)

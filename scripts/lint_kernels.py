@@ -1,37 +1,31 @@
-"""Checks every kernel with clang, for each combination of the macros that it reads, and how kernels are written with
-clang-format; needs no OpenCL device.
+"""Checks with clang every kernel in every way in which a filter compiles it, and with clang-format how kernels are
+written; needs no OpenCL device.
 """
 
 from __future__ import annotations
 
 import itertools
-import re
 import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 from svgf_cl.device import programs
+from svgf_cl.filters import FILTERS
+from svgf_cl.filters.signals import SPLITS, Inputs
 
-MACROS = {
-    "VW": (1, 4, 8, 16),
-    "SIGNALS": (1, 2),
-    "MOTION": (2, 3),
-    "HAS_ALBEDO": (0, 1),
-    "HAS_EMISSION": (0, 1),
-    "HAS_ID": (0, 1),
-    "TAA": (0, 1),
-}
+WIDTHS = (1, 4, 8, 16)
 # These say how something is done, not what there is: one value against another, and all at once, will do.
-VARIANTS = (
-    {"FAST": 0, "RADIUS": 2, "HALF_GUIDES": 0, "HALF_HISTORY": 0},
-    {"FAST": 1, "RADIUS": 2, "HALF_GUIDES": 0, "HALF_HISTORY": 1},
-    {"FAST": 0, "RADIUS": 1, "HALF_GUIDES": 1, "HALF_HISTORY": 0},
-    {"FAST": 1, "RADIUS": 1, "HALF_GUIDES": 1, "HALF_HISTORY": 1},
+SETTINGS: tuple[dict[str, Any], ...] = (
+    {"precision": "precise", "taps": "5x5"},
+    {"precision": "fast", "taps": "5x5", "half_history": True},
+    {"precision": "precise", "taps": "3x3", "half_guides": True},
+    {"precision": "fast", "taps": "3x3", "half_guides": True, "half_history": True},
 )
-# -Wundef: a macro that a kernel reads and this table lacks is an error, never a silent 0.
+# -Wundef: a macro that a kernel reads and no filter gives it is an error, never a silent 0.
 LANGUAGE = ("-x", "cl", "-cl-std=CL1.2", "-target", "spir64", "-Xclang", "-finclude-default-header")
 WARNINGS = (
     *("-Wall", "-Wextra", "-Wconversion", "-Wundef", "-Wshadow", "-Wcast-qual", "-Wdouble-promotion"),
@@ -42,20 +36,33 @@ ROOT = Path(__file__).resolve().parent.parent
 FORMATTED = ("kernels/*.cl", "kernels/*.clh", "svgf_cl/bench/*.cl")
 
 
-def combinations(source: str) -> Iterator[dict[str, int]]:
-    """Every variant with all values of the macros that a source reads, comments aside; others cannot change it."""
-    code = re.sub(r"//.*", "", source)
-    names = [name for name in MACROS if re.search(rf"\b{name}\b", code)]
-    for variant, values in itertools.product(VARIANTS, itertools.product(*(MACROS[name] for name in names))):
-        yield dict(zip(names, values, strict=True)) | variant
+Job = tuple[str, tuple[str, ...]]  # a source file and the compiler's options
 
 
-def check(stage: str, macros: dict[str, int]) -> str:
-    """Clang's complaints about a stage, empty if there are none."""
-    defines = [f"-D{name}={value}" for name, value in macros.items()]
+def inputs() -> Iterator[Inputs]:
+    """All that frames may supply."""
+    for signals, motion, *given in itertools.product(SPLITS, (2, 3), *[(False, True)] * 3):
+        yield Inputs(signals=signals, motion=motion, **dict(zip(("albedo", "emission", "id"), given, strict=True)))
+
+
+def jobs() -> list[Job]:
+    """Every source of every filter with all the macros that it may be compiled with, each once."""
+    found: dict[Job, None] = {}
+    filters = [kind(taa=taa, **chosen) for kind in FILTERS.values() for taa in (False, True) for chosen in SETTINGS]
+    for chosen, supplied, width in itertools.product(filters, inputs(), WIDTHS):
+        pipeline = chosen.pipeline(supplied)
+        for source in dict.fromkeys(entry.source for entry in pipeline.passes):
+            options = programs.options_of(source, {"VW": width, **pipeline.defines})
+            found[source, tuple(option for option in options if option.startswith("-D"))] = None
+    return list(found)
+
+
+def check(job: Job) -> str:
+    """Clang's complaints about a source, empty if there are none."""
+    source, defines = job
     command = ["clang", "-fsyntax-only", *LANGUAGE, *WARNINGS, *defines, "-"]
-    clang = subprocess.run(command, input=programs.source(stage), text=True, capture_output=True)
-    return f"kernels/{stage}.cl with {' '.join(defines)}:\n{clang.stderr}" if clang.returncode else ""
+    clang = subprocess.run(command, input=programs.source(source), text=True, capture_output=True)
+    return f"kernels/{source}.cl with {' '.join(defines)}:\n{clang.stderr}" if clang.returncode else ""
 
 
 def unformatted() -> str:
@@ -73,11 +80,11 @@ def main() -> int:
     if shutil.which("clang") is None:
         print("lint_kernels: clang is missing; install it, e.g. apt-get install clang", file=sys.stderr)
         return 1
-    jobs = [(stage, macros) for stage in programs.stages() for macros in combinations(programs.source(stage))]
+    variants = jobs()
     with ThreadPoolExecutor() as pool:
-        complaints = list(filter(None, pool.map(lambda job: check(*job), jobs)))
+        complaints = list(filter(None, pool.map(check, variants)))
     layout = unformatted()
-    print(*complaints[:3], layout, f"{len(jobs)} kernel variants checked, {len(complaints)} with errors", sep="\n")
+    print(*complaints[:3], layout, f"{len(variants)} kernel variants checked, {len(complaints)} with errors", sep="\n")
     return 1 if complaints or layout else 0
 
 

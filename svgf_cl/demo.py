@@ -23,6 +23,7 @@ import numpy as np
 import tracer
 from svgf_cl.compare.metrics import Metrics, measure
 from svgf_cl.denoiser import Denoiser
+from svgf_cl.filters import Settings
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.atomic import make_folder
 from svgf_cl.io.display import Bytes, to_bytes, write_image
@@ -36,7 +37,6 @@ from svgf_cl.io.frames import (
     write_picture,
 )
 from svgf_cl.io.panels import still, write_preview
-from svgf_cl.settings import Settings
 from tracer.references import CHUNK, chunks
 
 # From here on the history is long enough for the filter to be judged by.

@@ -1,77 +1,60 @@
-"""`Denoiser`: the pass table of `svgf_cl.filters.pipeline` put to work on a device."""
+"""`Denoiser`: checks what it is given, and runs a filter's plan frame by frame."""
 
 from __future__ import annotations
 
-import itertools
 import math
+import os
 import threading
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 import pyopencl as cl
 import pyopencl.array as cl_array
 
-from svgf_cl.device import programs
-from svgf_cl.device.arguments import check_queue, check_settings, check_shape, check_tuning, held, layout_of
-from svgf_cl.device.buffers import Buffers
+from svgf_cl.device.arguments import check_filter, check_inputs, check_queue, check_shape, check_tuning, held, layout_of
 from svgf_cl.device.events import pending
-from svgf_cl.device.launch import Grid, Launch
-from svgf_cl.device.memory_plan import memory_slots
 from svgf_cl.device.opencl_errors import allocate, opencl_errors
 from svgf_cl.device.tuning import Tuning
 from svgf_cl.device.user_arrays import UserArrays, check_out
 from svgf_cl.errors import FrameError, SvgfError, shown
-from svgf_cl.filters.formats import stored
-from svgf_cl.filters.pipeline import OUT, Inputs, Pass, pipeline
-from svgf_cl.filters.stages import StageView, stage_views
+from svgf_cl.filters import Settings
+from svgf_cl.filters.filter import Filter
+from svgf_cl.filters.pipeline import OUT
+from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Frame, Shape, UserArray
-from svgf_cl.settings import Settings
+from svgf_cl.plan import AfterPass, Plan, Workplace
 
 # What to do after an error of the device.
 NOT_BEGUN = "the frame was not begun, so the next one goes on from the last; if this stays, make a new Denoiser"
 BROKEN_OFF = "the past is forgotten, as by reset, so the next frame begins anew; if this stays, make a new Denoiser"
-NOT_READ = "if this stays, make a new Denoiser"
-
-
-@dataclass(frozen=True)
-class Plan:
-    """The pass table made ready for frames with one set of fields, and the history of the sequence so far."""
-
-    inputs: Inputs
-    planes: Buffers
-    turns: Iterator[tuple[Launch, ...]]
-    views: dict[str, StageView]
-
-    def next_frame(self) -> tuple[Launch, ...]:
-        """The launches of the next frame, after what was written in the last one became history."""
-        self.planes.begin_frame()
-        return next(self.turns)
+UNCHANGED = "nothing was changed; if this stays, make a new Denoiser"
 
 
 class Denoiser:
     """Denoises a sequence of frames of one size, one call a frame.
 
-    Threads may share one: a call waits for that of another thread to end. Denoisers do not disturb each other.
+    Threads may share one: a call waits for that of another thread to end. Denoisers do not disturb each other. It may
+    stand in a ``with``, at whose end it is closed. A process that was forked off needs a denoiser of its own, and must
+    have been started afresh ("spawn") for that, as OpenCL does not survive a fork.
 
     Parameters
     ----------
     shape : (int, int)
         (height, width) in pixels, each >= 1.
-    settings : Settings, optional
-        Parameters of the filter.
+    settings : Filter, optional
+        Which filter, and its parameters: `Settings` for SVGF, the default, `Eaw`, and others of `svgf_cl.filters`.
     queue : pyopencl.CommandQueue, optional
-        In-order queue to work on; by default one on the fastest working device (`svgf_cl.device.devices.default_queue`).
+        In-order queue to work on; by default one on the fastest working device
+        (`svgf_cl.device.devices.default_queue`).
     keep_stages : bool
         Copy every stage aside, so that `stage` can read all of them; by default some make room for later ones.
     tuning : Tuning, optional
         How to cut the work on this device; by default what ``svgf-cl tune`` found best, else what suits most.
-
-    Attributes
-    ----------
-    shape, settings, queue, tuning
-        What is in use.
+    after_pass : callable, optional
+        Is told the label and the event of every pass as soon as it is on the queue, to watch or time them one by one.
+        What it raises breaks off the frame.
 
     Raises
     ------
@@ -89,22 +72,45 @@ class Denoiser:
         self,
         shape: Shape,
         *,
-        settings: Settings | None = None,
+        settings: Filter | None = None,
         queue: cl.CommandQueue | None = None,
         keep_stages: bool = False,
         tuning: Tuning | None = None,
+        after_pass: AfterPass | None = None,
     ) -> None:
-        self.shape = check_shape(shape)
-        self.settings = check_settings(settings)
-        self.queue = check_queue(queue)
-        self.tuning = check_tuning(tuning, self.queue.device)
-        self._queue = held(self.queue)
-        self._layout = layout_of(self.shape, self.tuning.row_alignment)
-        self._keep_stages = keep_stages
-        self._arrays = UserArrays(self._queue)
+        self._shape = check_shape(shape)
+        self._settings = Settings() if settings is None else check_filter(settings)
+        self._queue = check_queue(queue)
+        self._tuning = check_tuning(tuning, self._queue.device)
+        self._after_pass = after_pass
+        self._workplace = self._work_in(self._shape, keep_stages)
+        self._arrays: UserArrays | None = UserArrays(self._workplace.queue)
         self._plan: Plan | None = None
-        self._events: list[tuple[str, cl.Event]] = []
+        self._inputs: Inputs | None = None
+        self._is_cut = True
+        self._events: tuple[tuple[str, cl.Event], ...] = ()
         self._turn = threading.RLock()
+        self._process = os.getpid()
+
+    @property
+    def shape(self) -> Shape:
+        """(height, width) of every frame; `resize` changes it."""
+        return self._shape
+
+    @property
+    def settings(self) -> Filter:
+        """The filter and its parameters; `update` changes them."""
+        return self._settings
+
+    @property
+    def queue(self) -> cl.CommandQueue:
+        """The queue that it works on."""
+        return self._queue
+
+    @property
+    def tuning(self) -> Tuning:
+        """How the work is cut on this device."""
+        return self._tuning
 
     def denoise(self, frame: Frame, *, out: Any = None, wait_for: Sequence[cl.Event] = ()) -> Any:
         """Filter the next frame of the sequence.
@@ -135,39 +141,102 @@ class Denoiser:
         """
         if not isinstance(frame, Frame):
             raise SvgfError(f"denoise(frame): expected a Frame, got {type(frame).__name__}")
-        frame.check(self.shape)
+        frame.check(self._shape)
         if out is not None:
-            check_out(out, (*self.shape, 3))
-        inputs = Inputs.of(frame)
-        fields = {name: getattr(frame, name) for name in inputs.fields}
-        with self._turn:
-            with opencl_errors(self._queue.device, "denoise", NOT_BEGUN):
-                plan = self._ready(inputs)
+            check_out(out, (*self._shape, 3))
+        with self._in_turn() as arrays:
+            with self._opencl_errors("denoise", NOT_BEGUN):
+                plan = self._ready(Inputs.of(frame))
+                fields = {name: getattr(frame, name) for name in plan.pipeline.fields}
                 result = self._result(frame) if out is None else out
-                events = pending(wait_for, {**fields, OUT: result}, self._queue)
-                buffers = self._arrays.buffers(fields, result)
-            self._filter(plan, buffers, result, events)
+                events = pending(wait_for, {**fields, OUT: result}, self._workplace.queue)
+                buffers = arrays.buffers(fields, result)
+            self._run(plan, arrays, buffers, result, events)
         return result
 
+    def warm_up(self, inputs: Inputs) -> None:
+        """Build kernels and take memory for frames that supply `inputs`, so that the first is not slower.
+
+        Raises
+        ------
+        SvgfError
+            If `inputs` are none, or not those of the sequence that has begun; `DeviceError` as by `denoise`.
+        """
+        check_inputs(inputs)
+        with self._in_turn(), self._opencl_errors("warm_up", UNCHANGED):
+            self._ready(inputs)
+            self._workplace.queue.finish()
+
     def reset(self) -> None:
-        """Forget the past: call it at a camera cut, or to send frames with other fields."""
+        """Forget the past, but keep kernels and memory: for a camera cut, or to send frames with other fields."""
+        with self._in_turn():
+            self._cut()
+
+    def update(self, settings: Filter) -> bool:
+        """Go on with other settings, or with another filter.
+
+        The past is kept, unless what is kept of it is stored in another way (another filter, or half_guides or
+        half_history): then the next frame begins anew.
+
+        Returns
+        -------
+        bool
+            Whether kernels were built or memory taken anew, which takes longer than a frame; numbers change without.
+        """
+        check_filter(settings)
+        with self._in_turn(), self._opencl_errors("update", UNCHANGED):
+            rebuilt = False
+            if self._plan and self._inputs:
+                pipeline = settings.pipeline(self._inputs)
+                rebuilt = pipeline.without_scalars() != self._plan.pipeline.without_scalars()
+                if rebuilt:
+                    plan = Plan(pipeline, self._workplace)
+                    if not self._is_cut and not plan.inherit(self._plan):
+                        self._cut()
+                    self._plan = plan
+                else:
+                    self._plan.set_scalars(pipeline)
+            self._settings = settings
+            return rebuilt
+
+    def resize(self, shape: Shape) -> None:
+        """Go on with frames of another (height, width): a cut, but with the kernels that are built already."""
+        shape = check_shape(shape)
+        with self._in_turn():
+            self._workplace = self._work_in(shape, self._workplace.keeps_stages)
+            self._shape, self._plan = shape, None
+            self._cut()
+
+    def close(self) -> None:
+        """Give memory back; no call but this one works afterwards. Results still being computed are completed."""
         with self._turn:
-            self._plan = None
-            self._events = []
+            self._plan, self._arrays, self._events = None, None, ()
+
+    def __enter__(self) -> Denoiser:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def events(self) -> tuple[tuple[str, cl.Event], ...]:
+        """Label and OpenCL event of every pass of the last frame, in order."""
+        return self._events
 
     def profile(self) -> dict[str, float]:
         """Milliseconds on the device of each pass of the last frame, in order, from OpenCL events."""
-        if not self._queue.properties & cl.command_queue_properties.PROFILING_ENABLE:
+        queue = self._workplace.queue
+        if not queue.properties & cl.command_queue_properties.PROFILING_ENABLE:
             raise SvgfError("profile(): the queue was made without PROFILING_ENABLE")
-        with self._turn, opencl_errors(self._queue.device, "profile", NOT_READ):
-            self._queue.finish()
+        with self._in_turn(), self._opencl_errors("profile", UNCHANGED):
+            queue.finish()
             return {name: 1e-6 * (event.profile.end - event.profile.start) for name, event in self._events}
 
     @property
     def stages(self) -> list[str]:
-        """Names that `stage` understands; empty before the first frame."""
+        """Names that `stage` understands; empty before the first frame, and after a cut until the next one."""
         with self._turn:
-            return list(self._plan.views) if self._plan else []
+            return list(self._plan.stages) if self._plan and self._events else []
 
     def stage(self, name: str) -> np.ndarray:
         """An intermediate result of the last frame, for debugging.
@@ -186,87 +255,100 @@ class Denoiser:
         SvgfError
             If there is no such stage, or its memory went to a later stage of the frame.
         """
-        with self._turn, opencl_errors(self._queue.device, "stage", NOT_READ):
-            if self._plan is None or not isinstance(name, str) or name not in self._plan.views:
-                known = ", ".join(self.stages) or "none before a frame"
-                raise SvgfError(f"stage: expected one of {known}; got {shown(name)}")
-            view = self._plan.views[name]
-            if not self._plan.planes.survives(view.buffer):
-                raise SvgfError(f"stage: {name!r} was overwritten by a later pass; use Denoiser(..., keep_stages=True)")
-            return view.of(self._layout.crop(self._plan.planes.read(view.buffer).view(view.dtype)))
+        with self._in_turn(), self._opencl_errors("stage", UNCHANGED):
+            return self._plan_with(name).read(name)
+
+    def raw_stage(self, name: str) -> np.ndarray:
+        """The whole buffer that holds a stage of the last frame, for debugging kernels.
+
+        Parameters
+        ----------
+        name : str
+            As for `stage`, with the same errors.
+
+        Returns
+        -------
+        (n,) of the type of the stage's elements
+            Plane after plane, rows with their padding, halo included.
+        """
+        with self._in_turn(), self._opencl_errors("raw_stage", UNCHANGED):
+            return self._plan_with(name).raw(name)
 
     @property
     def nbytes(self) -> int:
         """Device memory held for planes, in bytes; 0 before the first frame."""
         with self._turn:
-            return self._plan.planes.nbytes if self._plan else 0
+            return self._plan.nbytes if self._plan else 0
+
+    @contextmanager
+    def _in_turn(self) -> Iterator[UserArrays]:
+        """Around what touches the device: one thread at a time, in the process that made it, before it is closed."""
+        if os.getpid() != self._process:
+            raise SvgfError(
+                "Denoiser: expected the process that made it, got one forked off; OpenCL does not survive a fork, so "
+                "start processes with multiprocessing's 'spawn' and make a Denoiser in each"
+            )
+        with self._turn:
+            if self._arrays is None:
+                raise SvgfError("Denoiser: expected one that is open, got one after close() or the end of its 'with'")
+            yield self._arrays
+
+    @contextmanager
+    def _opencl_errors(self, what: str, then: str) -> Iterator[None]:
+        with opencl_errors(self._workplace.queue.device, what, then):
+            yield
+
+    def _work_in(self, shape: Shape, keep_stages: bool) -> Workplace:
+        widest = self._settings.pipeline(Inputs.every()).widest
+        layout = layout_of(shape, self._tuning.row_alignment, widest)
+        return Workplace(held(self._queue), layout, self._tuning, keep_stages)
 
     def _ready(self, inputs: Inputs) -> Plan:
-        """The plan for these inputs, made for a first frame: kernels built, history blank."""
-        if self._plan is None:
-            passes = pipeline(inputs, self.settings)
-            planes = self._planes(passes, inputs)
-            turns = itertools.cycle(self._turns(passes, inputs, planes))
-            return Plan(inputs, planes, turns, stage_views(passes, inputs, self.settings))
-        if inputs != self._plan.inputs:
-            raise FrameError("fields", f"{self._plan.inputs} as before, or a call of reset", str(inputs))
+        """The plan for these inputs; a new one where they changed at a cut."""
+        if self._plan is None or (self._is_cut and inputs != self._inputs):
+            self._plan = None  # its memory first
+            self._plan, self._inputs = Plan(self._settings.pipeline(inputs), self._workplace), inputs
+            self._is_cut = True
+        if inputs != self._inputs:
+            raise FrameError("fields", f"{self._inputs} as before, or a call of reset", str(inputs))
         return self._plan
 
-    def _filter(self, plan: Plan, buffers: dict[str, cl.Buffer], result: UserArray, events: list[cl.Event]) -> None:
+    def _run(
+        self,
+        plan: Plan,
+        arrays: UserArrays,
+        buffers: dict[str, cl.Buffer],
+        result: UserArray,
+        events: list[cl.Event],
+    ) -> None:
         """Run the passes; where they break off the past is forgotten, as half a frame is no history."""
-        self.reset()
-        with opencl_errors(self._queue.device, "denoise", BROKEN_OFF):
-            with self._arrays.in_use(buffers, result):
+        first = self._is_cut
+        self._cut()
+        queue = self._workplace.queue
+        with self._opencl_errors("denoise", BROKEN_OFF):
+            with arrays.in_use(buffers, result):
                 if events:
-                    cl.enqueue_barrier(self._queue, wait_for=events)
-                done = [(launch.entry.name, self._run(launch, plan.planes, buffers)) for launch in plan.next_frame()]
+                    cl.enqueue_barrier(queue, wait_for=events)
+                done = plan.run(buffers, first=first, after_pass=self._after_pass)
             if isinstance(result, cl_array.Array):
                 result.add_event(done[-1][1])
-                self._queue.flush()  # whoever waits for that event on another queue must not wait for ever
-        self._plan, self._events = plan, done
+                queue.flush()  # whoever waits for that event on another queue must not wait for ever
+        self._is_cut, self._events = False, tuple(done)
 
-    def _planes(self, passes: tuple[Pass, ...], inputs: Inputs) -> Buffers:
-        sizes = {name: stored(name, inputs, self.settings) for entry in passes for name in entry.writes if name != OUT}
-        return Buffers(self._queue, self._layout, memory_slots(passes, sizes), copies=self._keep_stages)
+    def _plan_with(self, stage: str) -> Plan:
+        """The plan, if it has such a stage of a last frame."""
+        known = self.stages
+        if self._plan is None or not isinstance(stage, str) or stage not in known:
+            raise SvgfError(f"stage: expected one of {', '.join(known) or 'none before a frame'}; got {shown(stage)}")
+        return self._plan
 
-    def _turns(self, passes: tuple[Pass, ...], inputs: Inputs, planes: Buffers) -> list[tuple[Launch, ...]]:
-        """The launches of odd and of even frames: this frame's buffers and the history take turns."""
-        turns = []
-        for _ in range(2):
-            planes.begin_frame()
-            turns.append(tuple(self._launch(entry, inputs, planes) for entry in passes))
-        return turns
-
-    def _launch(self, entry: Pass, inputs: Inputs, planes: Buffers) -> Launch:
-        defines = {"VW": self.tuning.vector_width, **inputs.defines, **self.settings.defines}
-        program = programs.build(self._queue.context, self._queue.device, entry.stage, defines)
-        kernel = cl.Kernel(program, entry.kernel)
-        scalars = [] if entry.step is None else [np.int32(entry.step)]
-        scalars += [np.float32(getattr(self.settings, name)) for name in entry.settings]
-        user = {*inputs.fields, OUT}
-        buffers = [name if name in user else planes[name] for name in (*entry.reads, *entry.writes)]
-        work_group = fitting(self.tuning.work_group, kernel, self._queue.device)
-        work_items = self._layout.work_items(self.tuning.vector_width, work_group, entry.step or 1)
-        return Launch(entry, kernel, (self._layout.size, *scalars, *buffers), work_items, work_group)
-
-    def _run(self, launch: Launch, planes: Buffers, user: dict[str, cl.Buffer]) -> cl.Event:
-        event = launch.enqueue(self._queue, user)
-        for name in launch.entry.writes:
-            if self._keep_stages and name != OUT:
-                planes.copy_aside(name)
-        return event
+    def _cut(self) -> None:
+        self._is_cut, self._events = True, ()
 
     def _result(self, frame: Frame) -> Any:
         """A new array for the result, of the same kind as the frame's."""
-        shape = (*self.shape, 3)
+        shape = (*self._shape, 3)
         if all(isinstance(value, cl_array.Array) for value in frame.present().values()):
             nbytes = 4 * math.prod(shape)
-            return cl_array.Array(self._queue, shape, np.float32, data=allocate(self._queue, nbytes, nbytes))
+            return cl_array.Array(self._queue, shape, np.float32, data=allocate(self._workplace.queue, nbytes, nbytes))
         return np.empty(shape, np.float32)
-
-
-def fitting(work_group: Grid, kernel: cl.Kernel, device: cl.Device) -> Grid:
-    """A work-group cut to what a device can run of one kernel: fewer, where that takes many registers."""
-    most = kernel.get_work_group_info(cl.kernel_work_group_info.WORK_GROUP_SIZE, device)
-    along = min(work_group[0], most)
-    return along, min(work_group[1], most // along)

@@ -10,6 +10,9 @@ import pyopencl.array as cl_array
 
 from svgf_cl.errors import FrameError
 
+# Luminance of linear Rec. 709 red, green and blue.
+LUMINANCE: tuple[float, float, float] = (0.2126, 0.7152, 0.0722)
+
 Shape = tuple[int, int]
 UserArray = np.ndarray | cl_array.Array
 

@@ -5,21 +5,24 @@ from __future__ import annotations
 import time
 from collections import defaultdict
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import pyopencl as cl
 import pyopencl.array as cl_array
 
 from svgf_cl.denoiser import Denoiser
-from svgf_cl.device.buffers import Buffers
-from svgf_cl.device.launch import Launch
-from svgf_cl.filters.pipeline import Inputs
+from svgf_cl.filters.filter import Filter
+from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.synthetic import room_frame
-from svgf_cl.settings import Settings
 
 WARM_UP = 5  # frames: kernels are built, memory is touched, history is long enough for the temporal variance
+
+# What is timed, as the parts of its name: a pass's path, or one of these.
+Row = tuple[str, ...]
+FRAME: Row = ("frame",)
+FRAME_NUMPY: Row = ("frame", "numpy")
+ENQUEUE: Row = ("enqueue",)
 
 # Clocks: the device's, from OpenCL events; the host's, from the call to the result.
 EVENT, HOST = "event", "host"
@@ -35,28 +38,6 @@ def on_device(queue: cl.CommandQueue, frame: Frame) -> Frame:
     return Frame(**{name: cl_array.to_device(queue, getattr(frame, name)) for name in Inputs.of(frame).fields})
 
 
-class TimedDenoiser(Denoiser):
-    """A denoiser that, where asked to, waits for every pass and takes the host's time of it."""
-
-    waits = False
-
-    def __init__(self, *arguments: Any, **options: Any) -> None:
-        super().__init__(*arguments, **options)
-        self.waited: dict[str, float] = {}
-
-    def _run(self, launch: Launch, planes: Buffers, user: dict[str, cl.Buffer]) -> cl.Event:
-        begin = time.perf_counter()
-        event = super()._run(launch, planes, user)
-        if self.waits:
-            event.wait()
-            self.waited[launch.entry.name] = time.perf_counter() - begin
-        return event
-
-    def span(self) -> float:
-        """Seconds on the device from the first pass's start to the last one's end, in the last frame."""
-        return 1e-9 * float(self._events[-1][1].profile.end - self._events[0][1].profile.start)
-
-
 class Rig:
     """Times one denoiser.
 
@@ -64,7 +45,7 @@ class Rig:
     ----------
     frames : pair of Frame
         As `there_and_back` gives them, in host memory.
-    settings : Settings
+    settings : Filter
     queue : pyopencl.CommandQueue
         With profiling.
     passes : bool
@@ -72,18 +53,18 @@ class Rig:
 
     Attributes
     ----------
-    samples : mapping from (stage, clock) to list of float, s
-        Stage: a pass's name; "atrous", all its levels; "frame", from the first pass to the last or, by the host's
-        clock, from the call to the finished result in device memory; "enqueue", until the call returns; "frame numpy",
-        the call with arrays in host memory.
+    samples : mapping from (row, clock) to list of float, s
+        Row: a pass's path; ("atrous",), all its levels; ("frame",), from the first pass to the last or, by the host's
+        clock, from the call to the finished result in device memory; ("enqueue",), until the call returns; ("frame",
+        "numpy"), the call with arrays in host memory.
     """
 
-    def __init__(
-        self, frames: tuple[Frame, Frame], settings: Settings, queue: cl.CommandQueue, *, passes: bool
-    ) -> None:
+    def __init__(self, frames: tuple[Frame, Frame], settings: Filter, queue: cl.CommandQueue, *, passes: bool) -> None:
         shape = frames[0].shape
-        self.denoiser = TimedDenoiser(shape, settings=settings, queue=queue)
-        self.samples: dict[tuple[str, str], list[float]] = defaultdict(list)
+        self.denoiser = Denoiser(shape, settings=settings, queue=queue, after_pass=self._after_pass)
+        self.samples: dict[tuple[Row, str], list[float]] = defaultdict(list)
+        self._paths = {entry.label: entry.path for entry in settings.pipeline(Inputs.of(frames[0])).passes}
+        self._waits, self._waited, self._since = False, dict[str, float](), 0.0
         self._host_frames, self._passes = frames, passes
         self._frames = [on_device(queue, frame) for frame in frames]
         self._out = cl_array.empty(queue, (*shape, 3), np.float32)
@@ -107,22 +88,34 @@ class Rig:
     def _whole_frame(self) -> None:
         begin = time.perf_counter()
         self._frame()
-        self.samples["enqueue", HOST].append(self._enqueued - begin)
-        self.samples["frame", HOST].append(time.perf_counter() - begin)
-        self.samples["frame", EVENT].append(self.denoiser.span())
+        self.samples[ENQUEUE, HOST].append(self._enqueued - begin)
+        self.samples[FRAME, HOST].append(time.perf_counter() - begin)
+        self.samples[FRAME, EVENT].append(self._span())
         if self._passes:
             self._add(EVENT, {name: 1e-3 * ms for name, ms in self.denoiser.profile().items()})
 
     def _pass_by_pass(self) -> None:
-        self.denoiser.waits = True
+        self._waits, self._since = True, time.perf_counter()
         self._frame()
-        self.denoiser.waits = False
-        self._add(HOST, self.denoiser.waited)
+        self._waits = False
+        self._add(HOST, self._waited)
+
+    def _after_pass(self, label: str, event: cl.Event) -> None:
+        """Where so asked, wait for every pass and take the host's time of it."""
+        if self._waits:
+            event.wait()
+            now = time.perf_counter()
+            self._waited[label], self._since = now - self._since, now
+
+    def _span(self) -> float:
+        """Seconds on the device from the first pass's start to the last one's end, in the last frame."""
+        events = self.denoiser.events
+        return 1e-9 * float(events[-1][1].profile.end - events[0][1].profile.start)
 
     def _with_numpy(self) -> None:
         begin = time.perf_counter()
         self.denoiser.denoise(self._next(self._host_frames), out=self._host_out)
-        self.samples["frame numpy", HOST].append(time.perf_counter() - begin)
+        self.samples[FRAME_NUMPY, HOST].append(time.perf_counter() - begin)
 
     def _frame(self) -> None:
         """One frame from device memory to device memory."""
@@ -131,11 +124,15 @@ class Rig:
         self.denoiser.queue.finish()
 
     def _add(self, clock: str, seconds: dict[str, float]) -> None:
-        """Add one frame's passes, and all its a-trous levels together."""
-        for name, value in seconds.items():
-            self.samples[name, clock].append(value)
-        levels = [value for name, value in seconds.items() if name.startswith("atrous ")]
-        self.samples["atrous", clock].append(sum(levels))
+        """Add one frame's passes, and those together that differ in their level alone."""
+        together: dict[Row, float] = defaultdict(float)
+        for label, value in seconds.items():
+            path = self._paths[label]
+            self.samples[path, clock].append(value)
+            if len(path) > 1:
+                together[path[:1]] += value
+        for row, value in together.items():
+            self.samples[row, clock].append(value)
 
     def _next(self, frames: Sequence[Frame]) -> Frame:
         self._count += 1

@@ -15,15 +15,15 @@ from svgf_cl.bench.ceilings import ALIGNED, OFFSET, CeilingBench, Ceilings
 from svgf_cl.bench.cores import confined
 from svgf_cl.bench.error import error_to_oracle
 from svgf_cl.bench.results import DeviceRecord, Result
-from svgf_cl.bench.rig import EVENT, HOST, Rig, there_and_back
+from svgf_cl.bench.rig import EVENT, FRAME, HOST, Rig, Row, there_and_back
 from svgf_cl.bench.roofline import BINDS, Bound
 from svgf_cl.bench.startup import first_frames
 from svgf_cl.device import devices
 from svgf_cl.device.devices import DeviceReport
 from svgf_cl.device.tuning import best_tuning
 from svgf_cl.errors import SvgfError
+from svgf_cl.filters.filter import Filter
 from svgf_cl.frame import Frame, Shape
-from svgf_cl.settings import Settings
 
 CEILING_SAMPLES = 3  # of each, every time
 
@@ -36,16 +36,16 @@ class Station:
     report : DeviceReport
         Of a device that works.
     chosen : sequence of Case
-    settings : Settings
+    settings : Filter
         Of which the error is told.
     """
 
-    def __init__(self, report: DeviceReport, chosen: Sequence[Case], settings: Settings) -> None:
+    def __init__(self, report: DeviceReport, chosen: Sequence[Case], settings: Filter) -> None:
         assert report.handle is not None
         self.report, self.chosen, self.settings = report, chosen, settings
         self._rigs: dict[Case, Rig] = {}
         self.left_out: list[str] = []
-        self._starts: dict[str, list[float]] = {}
+        self._starts: dict[Row, list[float]] = {}
         self._queue = devices.create_queue(report.handle)
         self._bench = CeilingBench(self._queue)
         self._copies: dict[int, list[float]] = {size: [] for size in self._bench.working_sets}
@@ -55,10 +55,10 @@ class Station:
     def set_up(self, case: Case) -> None:
         """Make a denoiser ready, or note why that is impossible."""
         try:
-            frames = room(case.shape, case.signals)
+            frames = room(case.shape, len(case.inputs.signals))
             self._rigs[case] = Rig(frames, case.settings, self._queue, passes=not case.variant)
         except (SvgfError, MemoryError, cl.Error) as error:  # as it may be that the device has no room
-            self.left_out.append(f"{case.name('frame')} on {self.report}: {error}")
+            self.left_out.append(f"{case.name(FRAME)} on {self.report}: {error}")
 
     def start(self) -> None:
         """Time the first frame of new processes."""
@@ -110,49 +110,49 @@ class Station:
         facts = {"flops": self._bench.operations}
         yield Result("ceiling.multiply", self.report.selector, EVENT, tuple(self._multiplications), facts)
         usual = Case(USUAL_SHAPE, self.settings)
-        for stage, values in self._starts.items():
-            if pattern.search(usual.name(stage)):
-                yield self._result(usual, stage, HOST, values)
+        for row, values in self._starts.items():
+            if pattern.search(usual.name(row)):
+                yield self._result(usual, row, HOST, values)
         for case, rig in self._rigs.items():
             bounds = bound_facts(case, ceilings)
-            for (stage, clock), values in rig.samples.items():
-                if stage in case.stages and pattern.search(case.name(stage)):
-                    more = bounds.get(stage, {}) if clock == EVENT else {}
-                    if stage == "frame" and not case.variant:
+            for (row, clock), values in rig.samples.items():
+                if row in case.rows and pattern.search(case.name(row)):
+                    more = bounds.get(row, {}) if clock == EVENT else {}
+                    if row == FRAME and not case.variant:
                         more = more | {"planes": rig.denoiser.nbytes}
-                    yield self._result(case, stage, clock, values, **more)
+                    yield self._result(case, row, clock, values, **more)
 
-    def _result(self, case: Case, stage: str, clock: str, seconds: Sequence[float], **more: Any) -> Result:
+    def _result(self, case: Case, row: Row, clock: str, seconds: Sequence[float], **more: Any) -> Result:
         facts = {
-            "stage": stage,
+            "stage": " ".join(row),
             "variant": case.variant,
             "width": case.shape[1],
             "height": case.shape[0],
-            "signals": case.signals,
-            "iterations": case.settings.iterations,
+            "signals": len(case.inputs.signals),
+            "iterations": getattr(case.settings, "iterations", None),
             "cores": case.cores,
         }
-        return Result(case.name(stage), self.report.selector, clock, tuple(seconds), facts | more)
+        return Result(case.name(row), self.report.selector, clock, tuple(seconds), facts | more)
 
 
-def bound_facts(case: Case, ceilings: Ceilings) -> dict[str, dict[str, Any]]:
-    """Per stage: bytes moved and loaded, operations, the least seconds and what binds; of several passes the sums."""
+def bound_facts(case: Case, ceilings: Ceilings) -> dict[Row, dict[str, Any]]:
+    """Per row: bytes moved and loaded, operations, the least seconds and what binds; of several passes the sums."""
     if case.cores is not None:  # the ceilings are those of all
         return {}
     costs = case.costs()
     before = [*costs.values()][-1:] + [*costs.values()][:-1]  # the first pass comes after the last of another frame
-    bounds = {name: Bound.of(costs[name], other, ceilings) for name, other in zip(costs, before, strict=True)}
-    groups = {name: [name] for name in costs}
-    groups["atrous"] = [name for name in costs if name.startswith("atrous ")]
-    groups["frame"] = list(costs)
+    bounds = {path: Bound.of(costs[path], other, ceilings) for path, other in zip(costs, before, strict=True)}
+    together = dict.fromkeys(path[:1] for path in costs if len(path) > 1)
+    groups = {path: [path] for path in costs} | {FRAME: list(costs)}
+    groups |= {row: [path for path in costs if path[:1] == row] for row in together}
     found = {}
-    for stage, names in groups.items():
-        seconds = {term: sum((bounds[n].seconds for n in names if bounds[n].binds == term), 0.0) for term in BINDS}
+    for row, paths in groups.items():
+        seconds = {term: sum((bounds[p].seconds for p in paths if bounds[p].binds == term), 0.0) for term in BINDS}
         binds = max(BINDS, key=seconds.__getitem__)
-        found[stage] = {
-            "bytes": sum(costs[n].bytes for n in names),
-            "loaded": sum(costs[n].loads.bytes for n in names),
-            "flops": sum(costs[n].flops for n in names),
+        found[row] = {
+            "bytes": sum(costs[p].bytes for p in paths),
+            "loaded": sum(costs[p].loads.bytes for p in paths),
+            "flops": sum(costs[p].flops for p in paths),
             "bound": sum(seconds.values()),
             "binds": binds,
         }

@@ -16,8 +16,9 @@ from svgf_cl.bench.station import Station
 from svgf_cl.device import devices
 from svgf_cl.device.devices import DeviceReport
 from svgf_cl.errors import SvgfError
+from svgf_cl.filters import Settings
+from svgf_cl.filters.filter import Filter
 from svgf_cl.frame import Shape
-from svgf_cl.settings import Settings
 
 # Everything is sampled so many times over, in turn: what disturbs the machine for a while disturbs all alike.
 TURNS = 5
@@ -35,14 +36,14 @@ class Suite:
     pattern : re.Pattern
         Searched for in the benchmarks' names.
     shapes : sequence of (int, int)
-    settings : Settings
+    settings : Filter
     seconds : float, s
         To spend on each denoiser, about; each kind of sample is taken `TURNS` times whatever it takes.
     """
 
     pattern: re.Pattern[str]
     shapes: Sequence[Shape] = SHAPES
-    settings: Settings = field(default_factory=Settings)
+    settings: Filter = field(default_factory=Settings)
     seconds: float = 1.0
 
     def run(self, progress_bar: ProgressBar) -> Run:
@@ -60,7 +61,7 @@ class Suite:
         """
         stations = [self._station(report) for report in timed_devices()]
         chosen = interleaved([[(station, case) for case in station.chosen] for station in stations])
-        starts = [stage for stage in STARTS if self.pattern.search(Case(USUAL_SHAPE, self.settings).name(stage))]
+        starts = [row for row in STARTS if self.pattern.search(Case(USUAL_SHAPE, self.settings).name(row))]
         if not chosen and not starts:
             raise SvgfError(
                 f"--filter: expected part of a name such as svgf.frame.1280x720, got {self.pattern.pattern}"
@@ -95,7 +96,7 @@ class Suite:
     def _station(self, report: DeviceReport) -> Station:
         assert report.handle is not None
         every = cases(report.handle, self.shapes, self.settings)
-        chosen = [case for case in every if any(self.pattern.search(case.name(stage)) for stage in case.stages)]
+        chosen = [case for case in every if any(self.pattern.search(case.name(row)) for row in case.rows)]
         return Station(report, chosen, self.settings)
 
 

@@ -13,7 +13,7 @@ from svgf_cl.check.camera import path
 from svgf_cl.check.check import Check
 from svgf_cl.check.finding import Finding, Unknown, percent
 from svgf_cl.check.view import Array, Mask, View, Whole, sample, shifted
-from svgf_cl.settings import Settings
+from svgf_cl.filters import Settings
 
 EDGE = 0.1  # relative difference of depth between surfaces, not within one
 ENOUGH = 300  # pixels

@@ -11,6 +11,7 @@ import typer
 from svgf_cl.cli import bench_tracer
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import Earlier, SettingTexts, parse_settings, parse_size
+from svgf_cl.filters import Settings
 from svgf_cl.errors import SvgfError
 from svgf_cl.io.atomic import make_folder
 
@@ -61,7 +62,7 @@ def bench(
     except ModuleNotFoundError as error:
         raise SvgfError(f"bench needs more ({error}): pip install '.[bench]' in a clone of svgf_cl") from error
     shapes = [parse_size(text) for text in size] or SHAPES
-    suite = Suite(parse_filter(filter_), shapes, parse_settings(set_), seconds)
+    suite = Suite(parse_filter(filter_), shapes, parse_settings(Settings.name, set_), seconds)
     earlier = Run.read(old) if old else None
     folder = make_folder(output) if output else None
     run = suite.run(progress_bar)

@@ -12,13 +12,14 @@ import numpy.typing as npt
 import typer
 
 from svgf_cl.cli.console import kept_of, show_times, tracked
-from svgf_cl.cli.options import Exposure, Output, SettingTexts, parse_settings
+from svgf_cl.cli.options import Exposure, FilterName, Output, SettingTexts, parse_settings
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.errors import SequenceError
+from svgf_cl.filters import Settings
+from svgf_cl.filters.filter import Filter
 from svgf_cl.io.atomic import make_folder
 from svgf_cl.io.display import to_bytes, write_image
 from svgf_cl.io.frames import check_leftovers, find_frames, is_picture, read_sequence, write_picture
-from svgf_cl.settings import Settings
 
 
 def denoise(
@@ -27,6 +28,7 @@ def denoise(
         typer.Argument(metavar="FRAMES", help="EXR files in order, or folders of frame.0000.exr and so on."),
     ],
     output: Output,
+    filter_: FilterName = Settings.name,
     set_: SettingTexts = [],  # noqa: B006  # never changed; typer wants the default spelled here
     png: Annotated[bool, typer.Option("--png", help="Also write every picture tone-mapped as PNG.")] = False,
     exposure: Exposure = 0.0,
@@ -45,7 +47,7 @@ def denoise(
       svgf-cl denoise out/box -o out/box-denoised
       svgf-cl denoise out/box -o out/box-denoised --set iterations=4 --set alpha_color=0.1 --png
     """
-    settings = parse_settings(set_)
+    settings = parse_settings(filter_, set_)
     sources = find_frames(frames)
     targets = target_paths(sources, make_folder(output))
     shown = [target.with_suffix(".png") for target in targets if png]
@@ -76,7 +78,7 @@ def target_paths(sources: Sequence[Path], folder: Path) -> list[Path]:
 
 
 def denoised(
-    sources: Sequence[Path], targets: Sequence[Path], settings: Settings
+    sources: Sequence[Path], targets: Sequence[Path], settings: Filter
 ) -> Iterator[tuple[Path, npt.NDArray[np.float32], dict[str, float]]]:
     """Read and denoise one frame after the other: where each goes, its picture, and milliseconds per pass."""
     denoiser = None

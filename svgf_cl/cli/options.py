@@ -11,10 +11,9 @@ from typing import Annotated
 import typer
 
 from svgf_cl.errors import SettingsError, SvgfError, shown
-from svgf_cl.settings import CHOICES, RANGES, Settings, describe_choice
-
-DEFAULTS: dict[str, bool | int | float | str] = vars(Settings())
-SWITCHES = {"true": True, "on": True, "1": True, "false": False, "off": False, "0": False}
+from svgf_cl.filters import FILTERS
+from svgf_cl.filters.filter import Filter
+from svgf_cl.settings import Domain, Switch, Value, defaults, domains
 
 # A slip of the hand beyond it: of so many pixels squared, one plane of float4 takes 16 GiB.
 MAX_SIDE = 32768
@@ -72,41 +71,40 @@ def parse_rgb(text: str) -> tuple[float, float, float]:
     return red, green, blue
 
 
-def parse_settings(texts: Iterable[str]) -> Settings:
-    """Read ``["iterations=4", "taa=on"]`` as `Settings`; `SettingsError` for an unknown name or a wrong value."""
-    values: dict[str, bool | int | float | str] = {}
+def parse_settings(filter_: str, texts: Iterable[str]) -> Filter:
+    """Read ``"svgf", ["iterations=4", "taa=on"]`` as `Settings`; `SettingsError` for a wrong name or value."""
+    if filter_ not in FILTERS:
+        raise SettingsError(f"--filter: expected {' or '.join(FILTERS)}, got {shown(filter_)}")
+    kind = FILTERS[filter_]
+    known = domains(kind)
+    values: dict[str, Value] = {}
     for text in texts:
         name, _, value = text.partition("=")
-        if name not in DEFAULTS:
-            raise SettingsError(f"--set: expected NAME=VALUE with a name out of {', '.join(DEFAULTS)}, got {text!r}")
+        if name not in known:
+            raise SettingsError(f"--set: expected NAME=VALUE with a name out of {', '.join(known)}, got {text!r}")
         try:
-            values[name] = parse_value(name, value)
+            values[name] = known[name].parse(value)
         except (KeyError, ValueError) as error:
-            raise SettingsError(f"--set {name}: expected {describe(name)}, got {value!r}") from error
-    return Settings(**values)  # type: ignore[arg-type]  # each value was made by its own field's type
+            raise SettingsError(f"--set {name}: expected {describe(known[name])}, got {value!r}") from error
+    return kind(**values)
 
 
-def parse_value(name: str, text: str) -> bool | int | float | str:
-    """Read the value of setting `name`; KeyError or ValueError where it is none. `Settings` checks its range."""
-    if name in CHOICES:
-        return text
-    return type(DEFAULTS[name])(text) if name in RANGES else SWITCHES[text.lower()]
-
-
-def describe(name: str) -> str:
-    """Describe the values that setting `name` may have: ``"a whole number in 1..5"``."""
-    if name in CHOICES:
-        return describe_choice(name)
-    if name not in RANGES:
-        return "on or off"
-    low, high = RANGES[name]
-    return f"a {'whole ' if isinstance(DEFAULTS[name], int) else ''}number in {low:g}..{high:g}"
+def describe(domain: Domain) -> str:
+    """What a setting may be, as one writes it on the command line."""
+    return "on or off" if isinstance(domain, Switch) else str(domain)
 
 
 def settings_help() -> str:
-    """Describe every setting with its range and default, for the help text."""
-    parts = (f"{name}: {describe(name)} [{default}]" for name, default in DEFAULTS.items())
-    return "Change a setting of the filter; may be repeated. " + "; ".join(parts) + "."
+    """Describe every setting with its range and default, for the help text; of further filters what is theirs alone."""
+    told: set[str] = set()
+    parts = []
+    for name, kind in FILTERS.items():
+        known, default = domains(kind), defaults(kind)
+        own = [f"{each}: {describe(known[each])} [{default[each]}]" for each in known if each not in told]
+        parts.append(f"{name}{' also' if told else ''}: {'; '.join(own)}.")
+        told |= set(known)
+    return f"Change a setting of the filter; may be repeated. {' '.join(parts)}"
 
 
+FilterName = Annotated[str, typer.Option("--filter", metavar="NAME", help=f"The filter: {' or '.join(FILTERS)}.")]
 SettingTexts = Annotated[list[str], typer.Option("--set", metavar="NAME=VALUE", help=settings_help())]

@@ -11,17 +11,23 @@ from svgf_cl.device import devices
 from svgf_cl.device.layout import Layout
 from svgf_cl.device.tuning import Tuning, best_tuning
 from svgf_cl.errors import SvgfError, shown
+from svgf_cl.filters.filter import Filter
+from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Shape
-from svgf_cl.settings import Settings
 
 
-def check_settings(settings: Settings | None) -> Settings:
-    """The defaults for None; `SvgfError` for anything that is not `Settings`."""
-    if settings is None:
-        return Settings()
-    if not isinstance(settings, Settings):
+def check_filter(settings: Filter) -> Filter:
+    """Raise `SvgfError` for anything that is no filter's settings."""
+    if not isinstance(settings, Filter):
         raise SvgfError(f"Denoiser: expected settings=Settings(...), got {shown(settings)}")
     return settings
+
+
+def check_inputs(inputs: Inputs) -> Inputs:
+    """Raise `SvgfError` for anything that is no `Inputs`."""
+    if not isinstance(inputs, Inputs):
+        raise SvgfError(f"Denoiser: expected Inputs(...) or Inputs.of(frame), got {shown(inputs)}")
+    return inputs
 
 
 def check_queue(queue: cl.CommandQueue | None) -> cl.CommandQueue:
@@ -70,9 +76,9 @@ def check_shape(shape: Shape) -> Shape:
     return height, width
 
 
-def layout_of(shape: Shape, row_alignment: int) -> Layout:
-    """The layout of an image; `SvgfError` where it is too large for the kernels' indices."""
+def layout_of(shape: Shape, row_alignment: int, planes: int) -> Layout:
+    """The layout of an image; `SvgfError` where kernels' indices do not reach all of a buffer of so many planes."""
     layout = Layout(*shape, row_alignment)
-    if not layout.indexable:
+    if not layout.indexable(planes):
         raise SvgfError(f"Denoiser: expected an image of at most about 16000 x 16000 pixels, got {shown(shape)}")
     return layout

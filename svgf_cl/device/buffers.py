@@ -10,14 +10,11 @@ import pyopencl as cl
 from svgf_cl.device.layout import Layout
 from svgf_cl.device.memory_plan import Slot
 from svgf_cl.device.opencl_errors import allocate, check_room, lack_of_room
-from svgf_cl.filters.pipeline import PREVIOUS
-
-# What a buffer holds before the first frame: a guide of zeros shows nothing, so there is no history; NaN is no colour.
-BLANK = {"antialiased": np.nan, "previous antialiased": np.nan}
+from svgf_cl.filters.pipeline import Buffer, Life, Resource
 
 
 class Buffers:
-    """The memory of a pass table by the names of its buffers; it begins as `BLANK` says.
+    """The memory of a pipeline by its buffers; all of it holds zeros at first.
 
     Parameters
     ----------
@@ -35,51 +32,70 @@ class Buffers:
     """
 
     def __init__(self, queue: cl.CommandQueue, layout: Layout, slots: Sequence[Slot], *, copies: bool = False) -> None:
-        self._queue = queue
-        self._slots = {name: slot for slot in slots for name in slot.buffers}
-        sizes = {slot.name: layout.nbytes(slot.planes.depth) for slot in slots}
-        kept = {name: sizes[slot.name] for name, slot in self._slots.items() if copies and not is_previous(name)}
-        needed = sum(sizes.values()) + sum(kept.values())
+        self._queue, self._layout = queue, layout
+        self._slot_of = {buffer: number for number, slot in enumerate(slots) for buffer in slot.buffers}
+        self._last_in_slot = {slot.buffers[-1] for slot in slots}
+        sizes = [layout.nbytes(slot.planes.depth) for slot in slots]
+        kept = {buffer: sizes[number] for buffer, number in self._slot_of.items() if copies and not buffer.previous}
+        needed = sum(sizes) + sum(kept.values())
         check_room(queue.device, needed)
-        self._memory = {name: self._filled(BLANK.get(name, 0.0), size, needed) for name, size in sizes.items()}
-        self._copies = {name: allocate(queue, size, needed) for name, size in kept.items()}
+        self._memory = [self._zeros(size, needed) for size in sizes]
+        self._copies = {buffer: allocate(queue, size, needed) for buffer, size in kept.items()}
 
     @property
     def nbytes(self) -> int:
         """Device memory in use, in bytes."""
-        return sum(buffer.size for buffer in (*self._memory.values(), *self._copies.values()))
+        return sum(buffer.size for buffer in (*self._memory, *self._copies.values()))
 
-    def __getitem__(self, name: str) -> cl.Buffer:
-        return self._memory[self._slots[name].name]
+    def __getitem__(self, buffer: Buffer) -> cl.Buffer:
+        return self._memory[self._slot_of[buffer]]
 
     def begin_frame(self) -> None:
         """Turn what was written in the last frame into history."""
-        for previous in [name for name in self._memory if is_previous(name)]:
-            current = previous.removeprefix(PREVIOUS)
-            self._memory[previous], self._memory[current] = self._memory[current], self._memory[previous]
+        for buffer in [buffer for buffer in self._slot_of if buffer.previous]:
+            now, before = self._slot_of[Buffer(buffer.resource)], self._slot_of[buffer]
+            self._memory[now], self._memory[before] = self._memory[before], self._memory[now]
 
-    def copy_aside(self, name: str) -> None:
+    def forget(self, resources: Sequence[Resource]) -> None:
+        """Have the frame that has begun know nothing of the past."""
+        for resource in resources:
+            for quantity in resource.quantities:
+                if quantity.unknown is not None:
+                    plane = self._layout.nbytes(8 * quantity.format.nbytes)
+                    begin = resource.first(quantity.name) * plane
+                    past = self[history_of(resource)]
+                    value = quantity.format.dtype.type(quantity.unknown)
+                    cl.enqueue_fill_buffer(self._queue, past, value, begin, quantity.planes * plane)
+
+    def inherit(self, other: Buffers, resources: Sequence[Resource]) -> None:
+        """Have the next frame find the past that it would find in `other`, which has these resources too."""
+        for resource in resources:
+            source, target = other[Buffer(resource)], self[Buffer(resource)]
+            nbytes = self._layout.nbytes(resource.planes.depth)
+            cl.enqueue_copy(self._queue, target, source, byte_count=nbytes)
+
+    def copy_aside(self, buffer: Buffer) -> None:
         """Have `read` find what a buffer holds now, though another takes its memory."""
-        cl.enqueue_copy(self._queue, self._copies[name], self[name])
+        cl.enqueue_copy(self._queue, self._copies[buffer], self[buffer])
 
-    def survives(self, name: str) -> bool:
+    def survives(self, buffer: Buffer) -> bool:
         """Whether `read` finds what was written to a buffer in this frame."""
-        return name in self._copies or self._slots[name].buffers[-1] == name
+        return buffer in self._copies or buffer in self._last_in_slot
 
-    def read(self, name: str) -> np.ndarray:
+    def read(self, buffer: Buffer) -> np.ndarray:
         """A copy of a whole buffer, flat float32."""
-        buffer = self._copies.get(name, self[name])
-        result = np.empty(buffer.size // 4, np.float32)
-        cl.enqueue_copy(self._queue, result, buffer)
+        source = self._copies.get(buffer, self[buffer])
+        result = np.empty(source.size // 4, np.float32)
+        cl.enqueue_copy(self._queue, result, source)
         return result
 
-    def _filled(self, value: float, nbytes: int, needed: int) -> cl.Buffer:
+    def _zeros(self, nbytes: int, needed: int) -> cl.Buffer:
         buffer = allocate(self._queue, nbytes, needed)
         with lack_of_room(self._queue.device, nbytes, needed):  # some drivers look for the room only now
-            cl.enqueue_fill_buffer(self._queue, buffer, np.float32(value), 0, nbytes)
+            cl.enqueue_fill_buffer(self._queue, buffer, np.float32(0), 0, nbytes)
         return buffer
 
 
-def is_previous(name: str) -> bool:
-    """Whether a buffer holds what another of a pair held in the last frame."""
-    return name.startswith(PREVIOUS)
+def history_of(resource: Resource) -> Buffer:
+    """What a frame finds of a lasting resource when it begins."""
+    return Buffer(resource, previous=resource.life is Life.PAIR)

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping
 
+import numpy as np
 import pyopencl as cl
 
-from svgf_cl.filters.pipeline import Pass
+from svgf_cl.filters.pipeline import FRAME_SCALARS, Pass
 
 Grid = tuple[int, int]
+Argument = np.ndarray | np.generic | cl.Buffer
 
 
 class Launch:
-    """A kernel that keeps its arguments, but for the user's arrays.
+    """A kernel that keeps its arguments, but for the user's arrays and the numbers that change with the frame.
 
     Parameters
     ----------
@@ -21,25 +22,37 @@ class Launch:
         What is launched.
     kernel : pyopencl.Kernel
         For this launch alone.
-    arguments : sequence
-        The kernel's, in order. A string is the name of one of the user's arrays.
+    fixed : mapping of str to argument
+        What does not change from frame to frame, by the kernel's names; all others are given with every frame.
     work_items, work_group : (int, int)
         Along a row and down.
     """
 
     def __init__(
-        self, entry: Pass, kernel: cl.Kernel, arguments: Sequence[Any], work_items: Grid, work_group: Grid
+        self, entry: Pass, kernel: cl.Kernel, fixed: Mapping[str, Argument], work_items: Grid, work_group: Grid
     ) -> None:
         self.entry = entry
         self._kernel = kernel
         self._grid = work_items, work_group
-        self._user = [(index, value) for index, value in enumerate(arguments) if isinstance(value, str)]
-        for index, value in enumerate(arguments):
-            if not isinstance(value, str):
-                kernel.set_arg(index, value)
+        self._index = {name: index for index, name in enumerate(entry.arguments)}
+        self._user = {each.argument: each.of for each in entry.accesses if isinstance(each.of, str)}
+        for name, value in fixed.items():
+            kernel.set_arg(self._index[name], value)
 
-    def enqueue(self, queue: cl.CommandQueue, user: Mapping[str, cl.Buffer]) -> cl.Event:
-        """Put the kernel on the queue, to work on these arrays of the user."""
-        for index, name in self._user:
-            self._kernel.set_arg(index, user[name])
+    def set_scalars(self, entry: Pass) -> None:
+        """Take the numbers of a pass that is the same but for them."""
+        for name, value in scalar_arguments(entry).items():
+            self._kernel.set_arg(self._index[name], value)
+
+    def enqueue(self, queue: cl.CommandQueue, user: Mapping[str, cl.Buffer], frame: Mapping[str, int]) -> cl.Event:
+        """Put the kernel on the queue, to work on these arrays of the user in this frame."""
+        for argument, name in self._user.items():
+            self._kernel.set_arg(self._index[argument], user[name])
+        for name in self.entry.per_frame:
+            self._kernel.set_arg(self._index[name], FRAME_SCALARS[name](frame[name]))
         return cl.enqueue_nd_range_kernel(queue, self._kernel, *self._grid)
+
+
+def scalar_arguments(entry: Pass) -> dict[str, np.generic]:
+    """A pass's numbers as kernels take them."""
+    return {name: np.int32(n) if isinstance(n, int) else np.float32(n) for name, n in entry.scalars.items()}

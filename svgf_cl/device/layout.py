@@ -1,4 +1,4 @@
-"""The device's layout of an image: a stack of planes with a halo; kernels/common.clh shows the same from inside."""
+"""The device's layout of an image: a stack of planes with a halo; kernels/layout.clh shows the same from inside."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ HALO = 32  # pixels on every side: the reach of the widest a-trous level, 2 taps
 WIDEST_VECTOR = 16  # pixels: rows begin at a whole vector
 ROW_ALIGNMENT = 64  # pixels: the taps of the widest level, 16 rows apart, then lie at the same place of a page
 PAGE = 1024  # pixels of 4 KiB: were all rows that far apart, they would fight for the same few lines of a cache
-LARGEST_BUFFER = 8  # planes: colour and variance of two signals
 
 
 @dataclass(frozen=True)
@@ -52,10 +51,9 @@ class Layout:
         rows = rounded_up(self.height, step)
         return rounded_up(-(-self.width // vector_width), group[0]), rounded_up(rows, group[1])
 
-    @property
-    def indexable(self) -> bool:
-        """Whether the kernels' 32-bit indices reach every element of the largest buffer."""
-        return LARGEST_BUFFER * self.plane < 2**31
+    def indexable(self, planes: int) -> bool:
+        """Whether the kernels' 32-bit indices reach every element of a buffer of so many planes."""
+        return planes * self.plane < 2**31
 
     @property
     def size(self) -> np.ndarray:

@@ -1,7 +1,7 @@
-"""Builds one stage's kernel source for one device, with its compile-time constants, and keeps the result.
+"""Builds the kernels of one source file for one device, with its compile-time constants, and keeps the result.
 
-A stage is ``kernels/<stage>.cl``. The shared header is put in front of it here, on the host: ``#include`` does not work
-on remote and offline devices. ``#line`` keeps the names and line numbers of build logs those of the files.
+A source is ``kernels/<name>.cl``. The shared headers are put in front of it here, on the host: ``#include`` does not
+work on remote and offline devices. ``#line`` keeps the names and line numbers of build logs those of the files.
 Across processes the driver's own cache (PoCL, NVIDIA) or pyopencl's remembers the binaries.
 """
 
@@ -19,9 +19,20 @@ from importlib import resources
 
 import pyopencl as cl
 
+from svgf_cl.device.layout import HALO
 from svgf_cl.errors import DeviceError
+from svgf_cl.filters.formats import HALF_MAX, SNORM_MAX
+from svgf_cl.frame import LUMINANCE
 
-HEADERS = ("common.clh", "storage.clh", "interleaved.clh", "surface.clh")
+HEADERS = (
+    "vectors.clh",
+    "layout.clh",
+    "gathers.clh",
+    "storage.clh",
+    "light.clh",
+    "interleaved.clh",
+    "surface.clh",
+)
 
 # No fast-math: it would allow the compiler to drop the guards against NaN and infinity. Weights too small to count are
 # denormal numbers, and slow: without them an a-trous level takes a seventh less time on traced frames.
@@ -33,20 +44,30 @@ os.environ.setdefault("PYOPENCL_CACHE_FAILURE_FATAL", "")
 
 Define = int | float | str
 
+# What kernels and host must agree on, whatever the filter.
+CONSTANTS: Mapping[str, Define] = {
+    "HALO": HALO,
+    "FLOAT16_MAX": HALF_MAX,
+    "SNORM_MAX": float(SNORM_MAX),
+    "LUMINANCE_RED": LUMINANCE[0],
+    "LUMINANCE_GREEN": LUMINANCE[1],
+    "LUMINANCE_BLUE": LUMINANCE[2],
+}
+
 _lock = threading.Lock()
 
 
-def stages() -> list[str]:
-    """Return the names of all stages, sorted."""
+def names() -> list[str]:
+    """Return the names of all source files, sorted."""
     files = resources.files("svgf_cl.kernels").iterdir()
     return sorted(file.name.removesuffix(".cl") for file in files if file.name.endswith(".cl"))
 
 
-def source(stage: str) -> str:
-    """Return a stage's whole source: the shared header, then the stage's own file."""
+def source(name: str) -> str:
+    """Return what is compiled for a source file: the shared headers, then the file itself."""
     kernels = resources.files("svgf_cl.kernels")
-    names = (*HEADERS, f"{stage}.cl")
-    return "\n".join(f'#line 1 "{name}"\n{(kernels / name).read_text(encoding="utf-8")}' for name in names)
+    files = (*HEADERS, f"{name}.cl")
+    return "\n".join(f'#line 1 "{file}"\n{(kernels / file).read_text(encoding="utf-8")}' for file in files)
 
 
 def options(defines: Mapping[str, Define]) -> tuple[str, ...]:
@@ -54,15 +75,15 @@ def options(defines: Mapping[str, Define]) -> tuple[str, ...]:
     return OPTIONS + tuple(f"-D{name}={_literal(value)}" for name, value in sorted(defines.items()))
 
 
-def build(context: cl.Context, device: cl.Device, stage: str, defines: Mapping[str, Define]) -> cl.Program:
-    """Build a stage for a device, or return it from memory if it was built before.
+def build(context: cl.Context, device: cl.Device, name: str, defines: Mapping[str, Define]) -> cl.Program:
+    """Build a source file for a device, or return it from memory if it was built before.
 
     Parameters
     ----------
     context, device
         What to build for; the device is one of the context's.
-    stage
-        Name of a file in ``kernels/``, without its suffix.
+    name
+        A file in ``kernels/``, without its suffix.
     defines
         Macros. A float becomes a single precision literal, a string is passed as it is.
 
@@ -72,27 +93,41 @@ def build(context: cl.Context, device: cl.Device, stage: str, defines: Mapping[s
         The device's compiler refused the source. The message holds device, driver, file, options and the log.
     """
     with _lock:
-        return _build(context, device, stage, options(mentioned(stage, defines)))
+        return _build(context, device, name, options_of(name, defines))
 
 
-def mentioned(stage: str, defines: Mapping[str, Define]) -> dict[str, Define]:
-    """Return the macros that a stage's code mentions; any other would only have it compiled again."""
-    words = set(re.findall(r"\w+", re.sub(r"//.*", "", source(stage))))
-    return {name: value for name, value in defines.items() if name in words}
+def options_of(name: str, defines: Mapping[str, Define]) -> tuple[str, ...]:
+    """Return the compiler's options for a source file: `CONSTANTS` and these macros, as far as it mentions them."""
+    return options(mentioned(name, {**CONSTANTS, **defines}))
+
+
+@functools.cache
+def words(name: str) -> frozenset[str]:
+    """Return all that may be a macro in what is compiled for a source file."""
+    return frozenset(re.findall(r"\w+", re.sub(r"//.*", "", source(name))))
+
+
+def mentioned(name: str, defines: Mapping[str, Define]) -> dict[str, Define]:
+    """Return the macros that a source file mentions; any other would only have it compiled again.
+
+    The channels of a quantity are mentioned where it is: the kernels' `PLANE` puts the two names together.
+    """
+    known = words(name)
+    return {macro: value for macro, value in defines.items() if macro.removesuffix("_CHANNELS") in known}
 
 
 @functools.lru_cache(maxsize=256)
-def _build(context: cl.Context, device: cl.Device, stage: str, flags: tuple[str, ...]) -> cl.Program:
+def _build(context: cl.Context, device: cl.Device, name: str, flags: tuple[str, ...]) -> cl.Program:
     try:
         with warnings.catch_warnings():
             # Drivers report success in their log. Whoever wants to read it sets pyopencl's own variable.
             if not os.environ.get("PYOPENCL_COMPILER_OUTPUT"):
                 warnings.simplefilter("ignore", cl.CompilerWarning)
-            program: cl.Program = cl.Program(context, source(stage)).build(options=list(flags), devices=[device])
+            program: cl.Program = cl.Program(context, source(name)).build(options=list(flags), devices=[device])
             return program
     except cl.Error as error:
         raise DeviceError(
-            f"{stage}.cl does not build on this device\n"
+            f"{name}.cl does not build on this device\n"
             f"device:  {device.name} ({device.platform.name})\n"
             f"driver:  {device.driver_version}\n"
             f"options: {' '.join(flags)}\n"

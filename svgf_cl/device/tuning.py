@@ -136,7 +136,7 @@ def forget_tuning(device: cl.Device) -> Path:
 @functools.cache
 def kernels_digest() -> str:
     """What identifies the kernels: the best tuning of others may be none of these."""
-    sources = "".join(programs.source(stage) for stage in programs.stages())
+    sources = "".join(programs.source(name) for name in programs.names())
     return hashlib.sha256(sources.encode()).hexdigest()[:16]
 
 

@@ -1,1 +1,10 @@
 """The filters, one file each, and the words in which they are declared."""
+
+from svgf_cl.filters.eaw import Eaw
+from svgf_cl.filters.filter import Filter
+from svgf_cl.filters.svgf import Settings
+
+__all__ = ["FILTERS", "Eaw", "Settings"]
+
+# By the name that the command line and the oracles know them by.
+FILTERS: dict[str, type[Filter]] = {each.name: each for each in (Settings, Eaw)}

@@ -1,14 +1,41 @@
-"""How a buffer's planes are kept, in 32 bits or in 16; kernels/storage.clh shows the same from inside."""
+"""How the numbers of a plane are kept, in 32 bits or in 16, and read back; kernels/storage.clh matches it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import Enum
 
-from svgf_cl.filters.pipeline import Inputs, kind_of
-from svgf_cl.settings import Settings
+import numpy as np
+from numpy.typing import NDArray
 
-LIGHT = ("demodulated", "accumulated", "history", "moments", "level")
-NORMALS = 3  # planes of the guide, behind all others
+SNORM_MAX = 32767  # the whole number that stands for 1
+HALF_MAX = 65504.0  # the greatest 16-bit float
+
+
+class Format(Enum):
+    """What a plane's elements are: their type, and what they hold of a value."""
+
+    FLOAT = "float32", "the value"
+    SNORM = "int16", "a value of -1..1 times SNORM_MAX"
+    HALF = "float16", "the value"
+    ROOT = "float16", "the square root: a variance itself would leave the range of 16 bits"
+
+    @property
+    def dtype(self) -> np.dtype[np.generic]:
+        """Of an element."""
+        return np.dtype(self.value[0])
+
+    @property
+    def nbytes(self) -> int:
+        """Of an element."""
+        return self.dtype.itemsize
+
+    def decoded(self, elements: NDArray[np.generic]) -> NDArray[np.float32]:
+        """What elements stand for, as a copy."""
+        values = np.array(elements, np.float32, order="C")
+        if self is Format.SNORM:
+            values /= SNORM_MAX
+        return values * values if self is Format.ROOT else values
 
 
 @dataclass(frozen=True)
@@ -24,6 +51,11 @@ class Planes:
         return 32 * self.full + 16 * self.half
 
     @property
+    def count(self) -> int:
+        """Planes of either kind."""
+        return self.full + self.half
+
+    @property
     def is_mixed(self) -> bool:
         """Whether there are planes of both kinds."""
         return bool(self.full and self.half)
@@ -31,13 +63,3 @@ class Planes:
     def over(self, other: Planes) -> Planes:
         """What has room for either."""
         return Planes(max(self.full, other.full), max(self.half, other.half))
-
-
-def stored(buffer: str, inputs: Inputs, settings: Settings) -> Planes:
-    """The planes of a buffer of the pass table."""
-    kind, count = kind_of(buffer), inputs.planes(buffer)
-    if kind in LIGHT and settings.half_history:
-        return Planes(0, count)
-    if kind == "guide" and settings.half_guides:
-        return Planes(count - NORMALS, NORMALS)
-    return Planes(count)

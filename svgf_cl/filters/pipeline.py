@@ -1,182 +1,297 @@
-"""The pipeline as a table: which kernel runs when, what it reads and what it writes.
+"""The words in which a filter is declared: what buffers hold, and which pass reads and writes what of them.
 
-Labels of the profiler, names of the stages a debugger can look at, and the sharing of memory all follow from this
-table.
+Memory, views of what lies between the passes, traffic, the macros by which kernels find a plane, and the order of a
+kernel's arguments all follow from a filter's `Pipeline`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from enum import Enum
 
-from svgf_cl.frame import Frame
-from svgf_cl.settings import Settings
+import numpy as np
 
-# Buffers that live from frame to frame. A pair is written anew every frame and read in the next as "previous ...".
-PAIRS = ("guide", "moments", "antialiased")
-PREVIOUS = "previous "
-HISTORY = ("history",)
-# What is made of what pixel by pixel, so that it may be written over it.
-IN_PLACE = {"accumulated": "demodulated"}
-# Where the user's result goes.
-OUT = "out"
+from svgf_cl.filters.formats import Format, Planes
+from svgf_cl.filters.taps import HERE, Taps
+from svgf_cl.frame import CHANNELS
+
+OUT = "out"  # the user's array for the result
+FRAME_SCALARS: Mapping[str, type[np.generic]] = {"frame_number": np.int32}  # since the last cut, from 0
+
+Number = int | float
 
 
 @dataclass(frozen=True)
-class Inputs:
-    """Which optional fields a frame has; kernels are built for exactly these, so what is absent costs nothing."""
+class Quantity:
+    """Something that a buffer holds of every pixel; all its planes lie together, signal by signal.
 
-    signals: int
-    motion: int
-    albedo: bool
-    emission: bool
-    id: bool
+    Parameters
+    ----------
+    name : str
+        Kernels find its first plane by the macro <KIND>_<NAME>, its channels by <KIND>_<NAME>_CHANNELS.
+    channels : int
+    signals : int
+        How many signals have one each; 0 where all share it.
+    format : Format
+    stage : str
+        Name by which `Denoiser.stage` shows it; not shown where empty.
+    is_light : bool
+        Whether its channels are red, luminance and blue, as kernels keep light, and stand for red, green and blue.
+    unknown : float, optional
+        What it holds where nothing is known of the past; written before the first frame and after a cut.
+    """
 
-    @classmethod
-    def of(cls, frame: Frame) -> Inputs:
-        """The inputs that `frame` supplies."""
-        return cls(
-            signals=1 if frame.direct is None else 2,
-            motion=int(frame.motion.shape[2]),
-            albedo=frame.albedo is not None,
-            emission=frame.emission is not None,
-            id=frame.id is not None,
-        )
+    name: str
+    channels: int = 1
+    signals: int = 0
+    format: Format = Format.FLOAT
+    stage: str = ""
+    is_light: bool = False
+    unknown: float | None = None
 
     @property
-    def fields(self) -> tuple[str, ...]:
-        """Names of the frame's fields that are read."""
-        optional = [name for name in ("albedo", "emission", "id") if getattr(self, name)]
-        return (*self.radiance, "normal", "depth", "motion", *optional)
+    def planes(self) -> int:
+        """Of all signals."""
+        return self.channels * max(self.signals, 1)
 
     @property
-    def radiance(self) -> tuple[str, ...]:
-        """The fields that are filtered."""
-        return ("color",) if self.signals == 1 else ("direct", "indirect")
+    def nbytes(self) -> int:
+        """Of a pixel."""
+        return self.planes * self.format.nbytes
+
+
+class Life(Enum):
+    """How long a buffer is needed."""
+
+    SCRATCH = "within a frame; its memory may serve others before and after"
+    HISTORY = "into the next frame, which reads it before it writes it anew"
+    PAIR = "into the next frame, which reads it while it writes another"
+
+
+@dataclass(frozen=True)
+class Resource:
+    """A buffer: quantities in 32 bits first, then those in 16.
+
+    Parameters
+    ----------
+    name : str
+        Of this buffer alone.
+    kind : str
+        Buffers of one kind have the same quantities, or the first of them; kernels name planes by it.
+    quantities : tuple of Quantity
+    life : Life
+    over : str
+        Name of a buffer that it may be written over, as it is made of that one pixel by pixel.
+    """
+
+    name: str
+    kind: str
+    quantities: tuple[Quantity, ...]
+    life: Life = Life.SCRATCH
+    over: str = ""
+
+    def __post_init__(self) -> None:
+        sizes = [quantity.format.nbytes for quantity in self.quantities]
+        narrow = sum(size < sizes[0] for size in sizes)
+        if sizes != sorted(sizes, reverse=True) or (narrow and narrow < len(sizes) and narrow > 1):
+            raise ValueError(f"{self.name}: expected at most one quantity in 16 bits, behind those in 32")
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of its quantities."""
+        return tuple(quantity.name for quantity in self.quantities)
+
+    def first(self, name: str) -> int:
+        """Planes in front of a quantity's."""
+        return sum(quantity.planes for quantity in self.quantities[: self.names.index(name)])
+
+    @property
+    def planes(self) -> Planes:
+        """How much memory it takes."""
+        full = sum(quantity.planes for quantity in self.quantities if quantity.format.nbytes == 4)
+        return Planes(full, sum(quantity.planes for quantity in self.quantities) - full)
+
+    @property
+    def tells_unknown(self) -> bool:
+        """Whether it says by itself where nothing is known of the past."""
+        return any(quantity.unknown is not None for quantity in self.quantities)
 
     @property
     def defines(self) -> dict[str, int]:
-        """The kernels' macros."""
-        return {
-            "SIGNALS": self.signals,
-            "MOTION": self.motion,
-            "HAS_ALBEDO": int(self.albedo),
-            "HAS_EMISSION": int(self.emission),
-            "HAS_ID": int(self.id),
-        }
+        """The macros by which kernels find its planes."""
+        found: dict[str, int] = {}
+        for quantity in self.quantities:
+            macro = f"{self.kind}_{quantity.name}".upper()
+            found |= {macro: self.first(quantity.name), f"{macro}_CHANNELS": quantity.channels}
+        return found
+
+
+@dataclass(frozen=True)
+class Buffer:
+    """A resource as one frame sees it: its own or, of a pair, that of the frame before."""
+
+    resource: Resource
+    previous: bool = False
 
     def __str__(self) -> str:
-        return f"{', '.join(self.fields)} (motion of {self.motion} components)"
+        return f"previous {self.resource.name}" if self.previous else self.resource.name
 
-    def planes(self, buffer: str) -> int:
-        """Number of planes of a device buffer."""
-        light = 3 * self.signals
-        with_variance = light + self.signals
-        counts = {
-            "guide": 5 if self.id else 4,
-            "demodulated": light,
-            "history": with_variance,
-            "moments": 1 + 2 * self.signals,
-            "accumulated": with_variance,
-            "level": with_variance,
-            "modulated": 3,
-            "antialiased": 3,
-        }
-        return counts[kind_of(buffer)]
+
+@dataclass(frozen=True)
+class Use:
+    """A quantity that a pass needs, and the pixels at which it does."""
+
+    quantity: Quantity
+    taps: Taps = HERE
+
+
+@dataclass(frozen=True)
+class Access:
+    """A kernel's argument that is a buffer, and what a pass needs of it in a steady state, with a long history.
+
+    Parameters
+    ----------
+    argument : str
+        The kernel's name for it.
+    of : Buffer or str
+        A name is that of one of the user's arrays: a field of `Frame`, or `OUT`.
+    uses : tuple of Use
+    """
+
+    argument: str
+    of: Buffer | str
+    uses: tuple[Use, ...]
+
+
+def user(name: str, argument: str = "", channels: int = 0) -> Access:
+    """An access to one of the user's arrays, or to so many of its channels."""
+    usual = 3 if name == OUT else max(1, *CHANNELS[name])
+    return Access(argument or name, name, (Use(Quantity(name, channels or usual)),))
+
+
+def access(
+    resource: Resource, argument: str = "", taps: Mapping[str, Taps] | None = None, *, previous: bool = False
+) -> Access:
+    """An access to the quantities that `taps` names, or else to all at the pixel itself."""
+    chosen = dict.fromkeys(resource.names, HERE) if taps is None else taps
+    uses = tuple(Use(each, chosen[each.name]) for each in resource.quantities if each.name in chosen)
+    usual = f"previous_{resource.name}" if previous else resource.name
+    return Access(argument or usual, Buffer(resource, previous), uses)
 
 
 @dataclass(frozen=True)
 class Pass:
-    """One kernel launch. Its arguments are: size, step (of an a-trous level), the settings, the reads, the writes."""
+    """One kernel launch.
 
-    kernel: str
-    reads: tuple[str, ...]
-    writes: tuple[str, ...]
-    settings: tuple[str, ...] = ()
+    Its arguments are the image's size, then what the fields below name, in their order.
+
+    Parameters
+    ----------
+    source : str
+        A file in ``kernels/``, without its suffix.
+    entry : str
+        The kernel in it.
+    scalars : mapping of str to int or float
+        Numbers that stay the same from frame to frame; kernels get a whole one as int, any other as float.
+    per_frame : tuple of str
+        Numbers that change with the frame, out of `FRAME_SCALARS`.
+    arrays : mapping of str to array
+        Constants in device memory, such as a network's weights.
+    reads, writes : tuple of Access
+    operations : float
+        Floating-point operations a pixel, counted from the equations (`svgf_cl.filters.operations`).
+    level : int, optional
+        Which of several like it, from 1.
+    row_step : int
+        The kernel deals its rows out so many apart, and wants whole rounds of them.
+    """
+
+    source: str
+    entry: str
+    scalars: Mapping[str, Number] = field(default_factory=dict)
+    per_frame: tuple[str, ...] = ()
+    arrays: Mapping[str, np.ndarray] = field(default_factory=dict, compare=False)
+    reads: tuple[Access, ...] = ()
+    writes: tuple[Access, ...] = ()
+    operations: float = 0.0
     level: int | None = None
+    row_step: int = 1
 
     @property
-    def name(self) -> str:
-        """Label in profiles."""
-        return self.kernel if self.level is None else f"{self.kernel} {self.level}"
+    def path(self) -> tuple[str, ...]:
+        """The entry and, where there are several like it, the level."""
+        return (self.entry,) if self.level is None else (self.entry, str(self.level))
 
     @property
-    def stage(self) -> str:
-        """Name of the kernel's source file; both ways through the albedo are one stage."""
-        return "modulate" if self.kernel == "demodulate" else self.kernel
+    def label(self) -> str:
+        """Its name in profiles."""
+        return " ".join(self.path)
 
     @property
-    def step(self) -> int | None:
-        """Pixels between the taps of an a-trous level."""
-        return None if self.level is None else 2 ** (self.level - 1)
+    def accesses(self) -> tuple[Access, ...]:
+        """Reads, then writes."""
+        return (*self.reads, *self.writes)
+
+    @property
+    def arguments(self) -> tuple[str, ...]:
+        """The kernel's names for its arguments, in order."""
+        return ("size", *self.scalars, *self.per_frame, *self.arrays, *(each.argument for each in self.accesses))
 
 
-def pipeline(inputs: Inputs, settings: Settings) -> tuple[Pass, ...]:
-    """The passes of a frame, in order (Schied et al. 2017, figure 1)."""
-    albedo = ("albedo",) if inputs.albedo else ()
-    emission = ("emission",) if inputs.emission else ()
-    id_ = ("id",) if inputs.id else ()
-    mixed_in = emission if inputs.signals == 1 else ()  # a split leaves emission out
-    passes = [
-        Pass(
-            "demodulate",
-            reads=(*inputs.radiance, *albedo, *mixed_in, "normal", "depth", *id_),
-            writes=("guide", "demodulated"),
-        ),
-        Pass(
-            "temporal",
-            reads=("motion", "guide", "demodulated", "previous guide", "history", "previous moments"),
-            writes=("accumulated", "moments"),
-            settings=("alpha_color", "alpha_moments", "depth_threshold", "normal_threshold"),
-        ),
-        Pass(
-            "variance",
-            reads=("guide", "moments"),
-            writes=("accumulated",),
-            settings=("sigma_depth", "sigma_normal", "depth_slope_floor"),
-        ),
-        *atrous_levels(settings.iterations),
-        Pass(
-            "modulate",
-            reads=(*albedo, *emission, level_buffer(settings.iterations)),
-            writes=("modulated" if settings.taa else OUT,),
-        ),
-    ]
-    if settings.taa:
-        passes.append(
-            Pass(
-                "taa",
-                reads=("motion", "guide", "moments", "modulated", "previous antialiased"),
-                writes=("antialiased", OUT),
-                settings=("alpha_taa",),
-            )
-        )
-    return tuple(passes)
+@dataclass(frozen=True)
+class Pipeline:
+    """The passes of a frame, in order, and the macros of their kernels beside those that follow from the passes."""
 
+    passes: tuple[Pass, ...]
+    macros: Mapping[str, int] = field(default_factory=dict)
 
-def atrous_levels(iterations: int) -> Iterator[Pass]:
-    """The wavelet levels; the first writes the colour history of the next frame (paper, section 4.1)."""
-    for level in range(1, iterations + 1):
-        yield Pass(
-            "atrous",
-            reads=("guide", level_buffer(level - 1)),
-            writes=(level_buffer(level),),
-            settings=("sigma_depth", "sigma_normal", "sigma_luminance", "depth_slope_floor"),
-            level=level,
-        )
+    @property
+    def resources(self) -> tuple[Resource, ...]:
+        """All that the passes write, each once, in the order of the first write."""
+        written = (each.of.resource for entry in self.passes for each in entry.writes if isinstance(each.of, Buffer))
+        return tuple(dict.fromkeys(written))
 
+    @property
+    def lasting(self) -> tuple[Resource, ...]:
+        """The resources that the next frame reads."""
+        return tuple(resource for resource in self.resources if resource.life is not Life.SCRATCH)
 
-def level_buffer(level: int) -> str:
-    """Buffer that holds the illumination after so many a-trous levels."""
-    return {0: "accumulated", 1: "history"}.get(level, f"level {level}")
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """The user's arrays that are read."""
+        read = (each.of for entry in self.passes for each in entry.reads if isinstance(each.of, str))
+        return tuple(dict.fromkeys(read))
 
+    @property
+    def defines(self) -> dict[str, int]:
+        """Every macro of the kernels that the pipeline decides."""
+        found = dict(self.macros)
+        for resource in self.resources:
+            for name, value in resource.defines.items():
+                if found.setdefault(name, value) != value:
+                    raise ValueError(f"{resource.name}: expected {name} {found[name]} as in others, got {value}")
+        return found
 
-def kind_of(buffer: str) -> str:
-    """What a buffer holds: a pair's halves are of one kind, and so are all levels."""
-    return buffer.removeprefix(PREVIOUS).partition(" ")[0]
+    @property
+    def widest(self) -> int:
+        """Planes of the largest buffer."""
+        return max(resource.planes.count for resource in self.resources)
 
+    @property
+    def reach(self) -> int:
+        """Pixels by which the widest taps lie off their pixel."""
+        return max(use.taps.reach for entry in self.passes for each in entry.reads for use in each.uses)
 
-def history_pairs(passes: tuple[Pass, ...]) -> list[str]:
-    """The pairs that these passes write."""
-    written = {name for p in passes for name in p.writes}
-    return [name for name in PAIRS if name in written]
+    def shown(self) -> Iterator[tuple[str, Resource, Quantity]]:
+        """Every stage: its name, and what it shows of which resource; in the order in which passes write them."""
+        for entry in self.passes:
+            for each in entry.writes:
+                for use in each.uses:
+                    if use.quantity.stage and isinstance(each.of, Buffer):
+                        yield use.quantity.stage, each.of.resource, use.quantity
+
+    def without_scalars(self) -> Pipeline:
+        """The same with no numbers: pipelines that are alike in this share kernels, memory and launches."""
+        blank = tuple(replace(entry, scalars=dict.fromkeys(entry.scalars, 0)) for entry in self.passes)
+        return replace(self, passes=blank)

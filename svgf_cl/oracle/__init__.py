@@ -1,1 +1,16 @@
 """Filters restated in float64 NumPy, one file each: what kernels are held against."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+from svgf_cl.filters.filter import Filter
+from svgf_cl.frame import Shape
+from svgf_cl.oracle.temporal import TemporalOracle
+
+
+def oracle_of(settings: Filter, shape: Shape) -> TemporalOracle[Any]:
+    """The oracle of a filter with these settings, for frames of this (height, width)."""
+    oracle: TemporalOracle[Any] = import_module(f"svgf_cl.oracle.{settings.name}").Oracle(shape, settings)
+    return oracle

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import pyopencl as cl
 from numpy.typing import NDArray
 
 from svgf_cl.denoiser import Denoiser
+from svgf_cl.filters import Settings
+from svgf_cl.filters.filter import Filter
 from svgf_cl.frame import Frame
-from svgf_cl.oracle import svgf as reference
-from svgf_cl.settings import Settings
+from svgf_cl.oracle import oracle_of
+from svgf_cl.oracle.taps import Array
+from svgf_cl.oracle.temporal import Past, seen_guides
 
 Single = NDArray[np.float32]
-Array = NDArray[np.float64]
 
 # An error counts against the value plus this share of the stage's mean: a relative error where there is something to be
 # relative to, an absolute one near zero. Of a colour, the value is the greatest of its channels: kernels keep luminance
@@ -61,7 +63,7 @@ class Deviation:
 
 
 def deviations(
-    frames: Iterable[Frame], settings: Settings | None = None, queue: cl.CommandQueue | None = None
+    frames: Iterable[Frame], settings: Filter | None = None, queue: cl.CommandQueue | None = None
 ) -> dict[str, Deviation]:
     """Denoise a sequence on the device and hold every kernel, one at a time, against the oracle.
 
@@ -69,7 +71,7 @@ def deviations(
     ----------
     frames : iterable of Frame
         All of one size, numpy arrays.
-    settings : Settings, optional
+    settings : Filter, optional
     queue : pyopencl.CommandQueue, optional
 
     Returns
@@ -80,22 +82,24 @@ def deviations(
     settings = settings or Settings()
     found: dict[str, list[Deviation]] = {}
     den: Denoiser | None = None
-    past: dict[str, Single] = {}
-    guides: reference.Guides | None = None
+    past: Past | None = None
     for frame in frames:
         den = den or Denoiser(frame.shape, settings=settings, queue=queue, keep_stages=True)
         out = den.denoise(frame)
-        now = {name: den.stage(name) for name in den.stages} | {"out": out}
-        previous = None if guides is None else History(guides, past)
-        guides = seen_guides(frame, now)
-        for kernel, stages in oracle_stages(frame, guides, now, previous, settings):
-            for stage, expected in stages.items():
+        now = {name: wide(values) for name, values in stages_of(den).items()} | {"out": wide(out)}
+        for kernel, made in oracle_of(settings, frame.shape).kernels(frame, now, past):
+            for stage, expected in made.items():
                 colour = expected.shape[-3:] == (*frame.shape, 3)
                 size = counted_against(largest_channel(expected) if colour else np.abs(expected))
                 error = np.abs(now[stage] - expected)
                 found.setdefault(stage, []).append(Deviation.of(kernel, error, np.broadcast_to(size, error.shape)))
-        past = now
+        past = Past(seen_guides(frame, now), now)
     return {stage: worst(frame_by_frame) for stage, frame_by_frame in found.items()}
+
+
+def stages_of(den: Denoiser) -> dict[str, Single]:
+    """Every stage of a denoiser's last frame."""
+    return {name: den.stage(name) for name in den.stages}
 
 
 def worst(found: Sequence[Deviation]) -> Deviation:
@@ -106,69 +110,6 @@ def worst(found: Sequence[Deviation]) -> Deviation:
         relative=max(deviation.relative for deviation in found),
         ulps=max(deviation.ulps for deviation in found),
         decided_otherwise=float(np.mean([deviation.decided_otherwise for deviation in found])),
-    )
-
-
-@dataclass(frozen=True)
-class History:
-    """Guides and stages of the previous frame, as the device has them."""
-
-    guides: reference.Guides
-    stages: dict[str, Single]
-
-    def accumulated(self) -> reference.History:
-        """What `temporal` reads."""
-        stages = self.stages
-        return reference.History(self.guides, accumulated(stages, illumination=stages["level_1"]))
-
-
-def seen_guides(frame: Frame, now: dict[str, Single]) -> reference.Guides:
-    """The oracle's guides with normal and depth as the device rounded them."""
-    _, guides = reference.demodulate(frame)
-    return replace(guides, normal=wide(now["normal"]), depth=wide(now["depth"]))
-
-
-def oracle_stages(
-    frame: Frame, guides: reference.Guides, now: dict[str, Single], previous: History | None, settings: Settings
-) -> Iterator[tuple[str, dict[str, Array]]]:
-    """What the oracle makes of each kernel's actual input: kernel by kernel, stage by stage."""
-    illumination, exact = reference.demodulate(frame, settings)
-    yield "demodulate", {"normal": exact.normal, "depth": exact.depth, "demodulated": illumination}
-
-    history = previous.accumulated() if previous else None
-    temporal = reference.temporal(wide(now["demodulated"]), guides, history, settings)
-    yield (
-        "temporal",
-        {
-            "accumulated": temporal.illumination,
-            "history_length": temporal.length,
-            "mean": temporal.mean,
-            "moment_variance": temporal.variance,
-        },
-    )
-    yield "variance", {"variance": reference.variance(accumulated(now, now["accumulated"]), guides, settings)}
-
-    source = "accumulated", "variance"
-    for level in range(settings.iterations):
-        target = f"level_{level + 1}", f"level_{level + 1}_variance"
-        filtered = reference.atrous(wide(now[source[0]]), wide(now[source[1]]), guides, level, settings)
-        yield "atrous", dict(zip(target, filtered, strict=True))
-        source = target
-
-    image = reference.modulate(wide(now[source[0]]), guides)
-    if not settings.taa:
-        yield "modulate", {"out": image}
-        return
-    yield "modulate", {"modulated": image}
-    antialiased = wide(previous.stages["antialiased"]) if previous else None
-    resolved, tone = reference.taa(wide(now["modulated"]), guides, wide(now["history_length"]), antialiased, settings)
-    yield "taa", {"antialiased": tone, "out": resolved}
-
-
-def accumulated(stages: dict[str, Single], illumination: Single) -> reference.Accumulated:
-    """The device's accumulated quantities, as the oracle takes them."""
-    return reference.Accumulated(
-        wide(illumination), wide(stages["mean"]), wide(stages["moment_variance"]), wide(stages["history_length"])
     )
 
 

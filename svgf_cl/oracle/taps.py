@@ -8,20 +8,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from svgf_cl.frame import Shape
+from svgf_cl.frame import LUMINANCE, Shape
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 Offset = tuple[int, int]
 
-REC709 = np.array((0.2126, 0.7152, 0.0722))
 GAUSSIAN = {-1: 1 / 4, 0: 1 / 2, 1: 1 / 4}
 
 
 def luminance(color: Array) -> Array:
     """Rec. 709 luminance, l(): (..., 3) to (...)."""
-    luma: Array = color @ REC709
+    luma: Array = color @ np.array(LUMINANCE)
     return luma
 
 

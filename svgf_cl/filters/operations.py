@@ -1,0 +1,88 @@
+"""Floating-point operations a pixel of the passes that filters share, counted from their equations, not their kernels.
+
+The equations are those of docs/algorithm.md, in single precision. An addition, multiplication, comparison with its
+choice, absolute value, rounding, division and root count as one each, so a multiply-add counts as two. What several
+taps have in common counts once. The state is steady: what a pass does only where history is short or lost is left out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from svgf_cl.filters.signals import Inputs
+
+DOT = 5  # x x' + y y' + z z'; a luminance too
+EXP = {"precise": 14, "fast": 2}  # polynomial of degree 4, 2 a degree, and 6 to reduce the range; or a conversion
+BLEND = 3  # a + t (b - a)
+DISTANCE = 3  # |a - b| scale
+GRADIENT = 10  # per axis two differences, two magnitudes, a choice
+SAFE = 2  # finite? else another value
+
+
+def demodulate(inputs: Inputs) -> float:
+    """Section 1: a unit normal, then radiance made safe, divided by albedo and clamped, and its luminance."""
+    signals = len(inputs.signals)
+    normal = DOT + 2 + 3 + SAFE
+    albedo = 3 * (SAFE + 1) if inputs.albedo else 0
+    holders = sum(signal.holds_emission for signal in inputs.signals)
+    emission = holders * 3 * (SAFE + 2) if inputs.emission else 0
+    return normal + albedo + emission + signals * (3 * (SAFE + 1 + 2) + DOT)
+
+
+def temporal(inputs: Inputs) -> float:
+    """Section 2: four taps of the footprint, each held against the surface, then the blend of colour and moments."""
+    signals = len(inputs.signals)
+    footprint = 2 * (1 + 2 + 2) + GRADIENT + 4  # clamp, floor and fraction per axis; tolerance of depth
+    consistent = DOT + 1 + (4 + 2 + 1) + 1 + (1 if inputs.id else 0)  # normal; depth along the surface; hit; id
+    weight = 3 + 1
+    tap = consistent + weight + 2 * (1 + 3 * signals) + signals * (2 + 3 + 2)  # N, c; M; V + (M - M_h)^2
+    blend = signals * (3 * BLEND + BLEND + 1 + 4)  # c; M; 1 - a; V
+    return footprint + 4 * tap + 4 + blend  # N, 1 / N, the two shares
+
+
+@dataclass(frozen=True)
+class LightOperations:
+    """What a wavelet filter does with light, of each signal.
+
+    Parameters
+    ----------
+    weight : float
+        For the weight of a tap's light, its exponential included.
+    sums : float
+        For adding a tap up.
+    once : float
+        For what the pixel's own light takes.
+    """
+
+    weight: float
+    sums: float
+    once: float
+
+
+def wavelet(inputs: Inputs, taps: int, light: LightOperations) -> float:
+    """Section 4: one level of so many taps beside the middle one; those at +d and -d share the tolerance of depth.
+
+    The terms and the spline add up to one exponent; its factors are those of the pixel, not of the tap.
+    """
+    surface = GRADIENT + 3 + 2 + 1  # normal, slope and floor times their sigmas
+    tolerance = 4 + 2 + 1  # |g . d|; plus the floor; reciprocal
+    exponent = DISTANCE + 1 + 2 * 3  # of w_z and h; of w_n
+    per_signal = taps * (light.weight + light.sums) + light.once
+    return surface + taps // 2 * tolerance + taps * exponent + len(inputs.signals) * per_signal
+
+
+def modulate(inputs: Inputs) -> float:
+    """Section 5: green from luminance, times albedo, plus emission."""
+    green = 2 * 2 + 1 + 1
+    albedo = SAFE + 2 if inputs.albedo else 0
+    emission = SAFE + 2 if inputs.emission else 0
+    return green + 3 * (len(inputs.signals) - 1 + albedo + emission + 1)
+
+
+def taa() -> float:
+    """Section 6: nearest neighbour, tone map, 4x4 taps of history, clamp, blend and back."""
+    tone = 8 + 2 + 3
+    foremost = 9 * 2
+    history = 2 * 16 + 16 * (1 + 2 * 3)
+    extent = 8 * 2 * 3
+    return foremost + tone + history + extent + 3 * (2 + BLEND) + 4 + 3 + 5

@@ -1,0 +1,179 @@
+"""What filters share that accumulate light over time: settings, buffers and passes, from the first to antialiasing.
+
+Equations: docs/algorithm.md, sections 1, 2, 5 and 6.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from svgf_cl.filters import operations
+from svgf_cl.filters.filter import Filter
+from svgf_cl.filters.formats import Format
+from svgf_cl.filters.pipeline import OUT, Life, Pass, Quantity, Resource, access, user
+from svgf_cl.filters.signals import Inputs
+from svgf_cl.filters.taps import CROSS, HERE, footprint, grid
+from svgf_cl.settings import number, switch
+
+
+@dataclass(frozen=True, kw_only=True)
+class TemporalFilter(Filter):
+    """A filter that accumulates noisy light along motion."""
+
+    alpha_color: float = number(
+        0.2,
+        (0.0, 1.0),
+        unit="share of a frame",
+        reason="Least share of the new frame in the accumulated colour. 0.2 as in SVGF's paper (section 4.1). Less is "
+        "steadier and lags more. SVGF feeds colour back filtered, so that detail in the light itself (not in "
+        "the albedo) softens with every frame it is kept: 0 is no way to converge on a still picture.",
+    )
+    depth_threshold: float = number(
+        0.02,
+        (0.0, 1.0),
+        unit="relative to depth",
+        reason="Reprojection: how far a tap may lie off the expected depth, beside one pixel of the surface's slope. "
+        "0.02 forgives curvature between the frames' sample positions and still tells objects a hand apart "
+        "across a room.",
+    )
+    normal_threshold: float = number(
+        0.9,
+        (-1.0, 1.0),
+        unit="cosine",
+        reason="Reprojection: least cosine between the normals of pixel and tap. 0.9, 26 degrees, as much as a small "
+        "ball's surface turns within a pixel or two.",
+    )
+    taa: bool = switch(
+        False,
+        reason="Temporal antialiasing after the filter; off, because a renderer often has its own. For radiance up to "
+        "about 1e4: brighter light loses precision, and nothing above 1e6 comes back.",
+    )
+    alpha_taa: float = number(
+        0.2,
+        (0.0, 1.0),
+        unit="share of a frame",
+        reason="Share of the new frame in the antialiased picture. 0.2: on the moving demo 0.8 dB better than the "
+        "usual 0.1, for each resampling of the history softens it; less suits a still camera.",
+    )
+    half_guides: bool = switch(
+        False,
+        reason="Keep normals as 16-bit whole numbers: 6 of the guide's 16 bytes less a pixel, an error of 2^-16. Off: "
+        "no faster on a CPU, where the time saved on memory is spent on converting.",
+    )
+    half_history: bool = switch(
+        False,
+        reason="Keep illumination, its history and its moments as 16-bit floats: half their memory, an error of "
+        "2^-12, of light that stands still up to 2^-11 / alpha_color (or 2^-6: an alpha below 1/32 counts as "
+        "that), and illumination that saturates at 65504. Off: no faster on a CPU.",
+    )
+
+    @property
+    def macros(self) -> dict[str, int]:
+        """What these settings decide when kernels are built."""
+        return {"TAA": int(self.taa), "HALF_GUIDES": int(self.half_guides), "HALF_HISTORY": int(self.half_history)}
+
+    @property
+    def light_format(self) -> Format:
+        """Of light, its mean, and the length of its history."""
+        return Format.HALF if self.half_history else Format.FLOAT
+
+    @property
+    def variance_format(self) -> Format:
+        """Of a variance of light."""
+        return Format.ROOT if self.half_history else Format.FLOAT
+
+    def guide(self, inputs: Inputs) -> Resource:
+        """The surface that a pixel shows; depth is 0 at a miss, where there is no history either."""
+        depth = Quantity("depth", stage="depth", unknown=0.0)
+        id_ = (Quantity("id"),) if inputs.id else ()
+        normal = Quantity("normal", 3, format=Format.SNORM if self.half_guides else Format.FLOAT, stage="normal")
+        return Resource("guide", "guide", (depth, *id_, normal), Life.PAIR)
+
+    def color(self, inputs: Inputs, stage: str) -> Quantity:
+        """Light divided by albedo."""
+        return Quantity("color", 3, len(inputs.signals), self.light_format, stage, is_light=True)
+
+    def demodulated(self, inputs: Inputs) -> Resource:
+        """The frame's noisy light."""
+        return Resource("demodulated", "illumination", (self.color(inputs, "demodulated"),))
+
+    def moments(self, inputs: Inputs) -> Resource:
+        """Length of the history in frames, and what each signal carries along."""
+        known = {"mean": (self.light_format, "mean"), "variance": (self.variance_format, "moment_variance")}
+        carried = [name for signal in inputs.signals for name in signal.carries]
+        quantities = [Quantity(name, 1, carried.count(name), *known[name]) for name in dict.fromkeys(carried)]
+        length = Quantity("length", format=self.light_format, stage="history_length")
+        return Resource("moments", "moments", (length, *quantities), Life.PAIR)
+
+    def demodulate_pass(self, inputs: Inputs) -> Pass:
+        """The user's arrays to planes: made safe, and light divided by albedo."""
+        light = tuple(user(signal.field, f"radiance_{number}") for number, signal in enumerate(inputs.signals))
+        divides = inputs.albedo and any(signal.divided_by == "albedo" for signal in inputs.signals)
+        subtracts = inputs.emission and any(signal.holds_emission for signal in inputs.signals)
+        optional = [name for name, read in (("albedo", divides), ("emission", subtracts)) if read]
+        surface = ("normal", "depth", "id") if inputs.id else ("normal", "depth")
+        return Pass(
+            "modulate",
+            "demodulate",
+            reads=(*light, *map(user, optional), *map(user, surface)),
+            writes=(access(self.guide(inputs)), access(self.demodulated(inputs), "illumination")),
+            operations=operations.demodulate(inputs),
+        )
+
+    def temporal_pass(self, inputs: Inputs, history: Resource, accumulated: Resource, *, alpha_moments: float) -> Pass:
+        """Accumulation along motion: `history` of the previous frame and new light become `accumulated`."""
+        guide, moments = self.guide(inputs), self.moments(inputs)
+        taps = footprint(2)
+        return Pass(
+            "temporal",
+            "temporal",
+            scalars={
+                "alpha_color": self.alpha_color,
+                "alpha_moments": alpha_moments,
+                "depth_threshold": self.depth_threshold,
+                "normal_threshold": self.normal_threshold,
+            },
+            reads=(
+                user("motion", channels=inputs.motion),
+                access(guide, taps=dict.fromkeys(guide.names, HERE) | {"depth": CROSS}),
+                access(self.demodulated(inputs), "illumination"),
+                access(guide, taps=dict.fromkeys(guide.names, taps), previous=True),
+                access(history, "history", {"color": taps}, previous=history.life is Life.PAIR),
+                access(moments, taps=dict.fromkeys(moments.names, taps), previous=True),
+            ),
+            writes=(access(accumulated, "accumulated", {"color": HERE}), access(moments)),
+            operations=operations.temporal(inputs),
+        )
+
+    def last_passes(self, inputs: Inputs, filtered: Resource) -> tuple[Pass, ...]:
+        """Filtered light to the user's array: times albedo, and antialiased if so set."""
+        optional = [name for name in ("albedo", "emission") if getattr(inputs, name)]
+        picture = Resource("modulated", "picture", (Quantity("color", 3, stage="modulated"),))
+        modulate = Pass(
+            "modulate",
+            "modulate",
+            reads=(*map(user, optional), access(filtered, "illumination", {"color": HERE})),
+            writes=(access(picture, OUT) if self.taa else user(OUT),),
+            operations=operations.modulate(inputs),
+        )
+        return (modulate, self.taa_pass(inputs, picture)) if self.taa else (modulate,)
+
+    def taa_pass(self, inputs: Inputs, picture: Resource) -> Pass:
+        """Temporal antialiasing; NaN in its history is no colour."""
+        color = Quantity("color", 3, stage="antialiased", unknown=math.nan)
+        antialiased = Resource("antialiased", "picture", (color,), Life.PAIR)
+        return Pass(
+            "taa",
+            "taa",
+            scalars={"alpha_taa": self.alpha_taa},
+            reads=(
+                user("motion", channels=2),
+                access(self.guide(inputs), taps={"depth": grid(1)}),
+                access(self.moments(inputs), taps={"length": HERE}),
+                access(picture, "picture", {"color": grid(1)}),
+                access(antialiased, "history", {"color": footprint(4)}, previous=True),
+            ),
+            writes=(access(antialiased, "next_history"), user(OUT)),
+            operations=operations.taa(),
+        )

@@ -1,0 +1,397 @@
+"""Float64 oracle of what temporal filters share: docs/algorithm.md restated in NumPy, one function a kernel.
+
+Arrays are image-shaped: planes (H, W), pictures (H, W, 3), and whatever exists once per signal has a leading axis S.
+The symbols in the docstrings (p, q, c, V, M, N, g, w, h) and the section numbers are those of docs/algorithm.md.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Generator, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar, Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from svgf_cl.filters.temporal import TemporalFilter
+from svgf_cl.frame import Frame, Shape
+from svgf_cl.oracle.taps import (
+    Array,
+    Indices,
+    Mask,
+    bilinear_taps,
+    catmull_rom_taps,
+    depth_gradient,
+    dot,
+    finite,
+    locate,
+    luminance,
+    nearest_taps,
+    reprojected,
+    shifted,
+    square,
+)
+
+CHANNEL_MAX = 1e10
+DEPTH_RANGE = (1e-20, 1e20)
+ALBEDO_FLOOR = 0.001
+NORMAL_FLOOR = 1e-12  # of a normal's square
+# Whether kept as 16-bit floats.
+ILLUMINATION_MAX = {False: 1e13, True: 65504.0}
+MOTION_MAX = 1e6
+NO_HISTORY = (-MOTION_MAX, -MOTION_MAX, 0.0)
+NEARER = float(np.float32(0.9999))
+HISTORY_WEIGHT = 0.01  # of the taps at the position itself, from which they are a history
+HEADROOM = 1e-6  # of a tone below 1
+LENGTH_MAX = {False: 1024, True: 32}
+YCOCG_OF_RGB = np.array(((1 / 4, 1 / 2, 1 / 4), (1 / 2, 0, -1 / 2), (-1 / 4, 1 / 2, -1 / 4)))
+RGB_OF_YCOCG = np.array(((1, 1, -1), (1, 0, 1), (1, -1, -1)))
+
+
+@dataclass(frozen=True, eq=False)
+class Guides:
+    """The noise-free part of a frame, made safe by `demodulate`.
+
+    Parameters
+    ----------
+    normal : (H, W, 3), unit; 0 at a miss.
+    depth : (H, W), > 0; 0 at a miss.
+    motion : (H, W, 3), previous minus current x, y and depth.
+    id : (H, W) integers, or None where the frame has none.
+    albedo : (H, W, 3), 0.001..1.
+    emission : (H, W, 3), not negative.
+    """
+
+    normal: Array
+    depth: Array
+    motion: Array
+    id: NDArray[np.integer] | None
+    albedo: Array
+    emission: Array
+
+    @property
+    def hit(self) -> Mask:
+        """Where something was seen, (H, W)."""
+        return self.depth > 0
+
+
+@dataclass(frozen=True, eq=False)
+class Accumulated:
+    """What temporal accumulation knows of each pixel.
+
+    Parameters
+    ----------
+    illumination : (S, H, W, 3), c.
+    mean : (S, H, W), M, of luminance.
+    variance : (S, H, W), V, of luminance, from the moments.
+    length : (H, W), N, in frames; 0 at a miss.
+    """
+
+    illumination: Array
+    mean: Array
+    variance: Array
+    length: Array
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """The previous frame: its guides, and what it accumulated, with the colour history as illumination (c_h)."""
+
+    guides: Guides
+    accumulated: Accumulated
+
+
+def demodulate(frame: Frame, *, half: bool = False) -> tuple[Array, Guides]:
+    """Section 1: make the input safe, then divide out the albedo.
+
+    Parameters
+    ----------
+    frame : Frame of numpy arrays.
+    half : bool
+        Whether light is kept in 16 bits, which says how bright it may be.
+
+    Returns
+    -------
+    illumination : (S, H, W, 3), c; S is 2 with direct and indirect, else 1.
+    guides : Guides
+    """
+    given = {name: np.asarray(value, np.float64) for name, value in frame.present().items() if name != "id"}
+    albedo = given.get("albedo", np.ones((*frame.shape, 3)))
+    albedo = np.where(np.isnan(albedo), 1, np.clip(albedo, ALBEDO_FLOOR, 1))
+    emission = given.get("emission", np.zeros((*frame.shape, 3)))
+    emission = np.maximum(known(emission), 0)
+    normal, depth = safe_surface(given["normal"], given["depth"])
+    guides = Guides(normal, depth, safe_motion(given["motion"]), frame.id, albedo, emission)
+
+    split = "direct" in given
+    reflected = [known(given[name]) for name in ("direct", "indirect")] if split else [known(given["color"]) - emission]
+    return np.clip(np.stack(reflected) / albedo, 0, ILLUMINATION_MAX[half]), guides
+
+
+def known(color: Array) -> Array:
+    """Section 1: a radiance or normal, (..., 3); 0 where any channel is NaN or beyond 1e10."""
+    return np.where((np.abs(color) <= CHANNEL_MAX).all(axis=-1, keepdims=True), color, 0)
+
+
+def safe_surface(normal: Array, depth: Array) -> tuple[Array, Array]:
+    """Section 1: unit normal (H, W, 3) and depth (H, W) of a hit, 0 and 0 of a miss."""
+    normal = known(normal)
+    squared = dot(normal, normal)
+    nearest, farthest = DEPTH_RANGE
+    hit = (depth > nearest) & (depth < farthest) & (squared > NORMAL_FLOOR)
+    length = np.sqrt(np.where(hit, squared, 1))
+    return np.where(hit[..., None], normal / length[..., None], 0), np.where(hit, depth, 0)
+
+
+def safe_motion(motion: Array) -> Array:
+    """Section 2: (H, W, 2) or (H, W, 3) to (H, W, 3), clamped; far outside the image where it is not finite."""
+    if motion.shape[-1] == 2:
+        motion = np.concatenate((motion, np.zeros_like(motion[..., :1])), axis=-1)
+    bound = np.array((MOTION_MAX, MOTION_MAX, np.inf))
+    return np.where(finite(motion), np.clip(motion, -bound, bound), NO_HISTORY)
+
+
+def consistent(x: Indices, y: Indices, guides: Guides, previous: Guides, settings: TemporalFilter) -> Mask:
+    """Section 2: whether the previous frame's taps (x, y), each (T, H, W), show what the pixel shows now."""
+    gradient = depth_gradient(guides.depth)
+    expected = guides.depth + guides.motion[..., 2]
+    along_surface = dot(gradient, np.stack((x, y), axis=-1) - reprojected(guides.motion))
+    tolerance = settings.depth_threshold * expected + np.abs(gradient).sum(axis=-1)
+
+    rows, columns, inside = locate(x, y, guides.depth.shape)
+    same = inside & guides.hit & previous.hit[rows, columns]
+    same &= np.abs(previous.depth[rows, columns] - (expected + along_surface)) <= tolerance
+    same &= dot(guides.normal, previous.normal[rows, columns]) >= settings.normal_threshold
+    if guides.id is not None and previous.id is not None:
+        same &= guides.id == previous.id[rows, columns]
+    return same
+
+
+def reproject(guides: Guides, history: History, settings: TemporalFilter) -> tuple[Accumulated, Mask]:
+    """Section 2: the history mean over the consistent taps, and where there is one, (H, W)."""
+    position = reprojected(guides.motion)
+
+    # 13 candidates: the bilinear four, and the nearest nine that stand in where those four weigh too little.
+    x, y, b = (np.concatenate(pair) for pair in zip(bilinear_taps(position), nearest_taps(position), strict=True))
+    b *= consistent(x, y, guides, history.guides, settings)
+    enough = b[:4].sum(axis=0) > HISTORY_WEIGHT
+    b[:4] *= enough
+    b[4:] *= ~enough
+    found = b.sum(axis=0) > 0
+    b /= np.where(found, b.sum(axis=0), 1)
+
+    def average(taps: Array) -> Array:
+        mean: Array = np.einsum("thw,sthw...->shw...", b, taps)
+        return mean
+
+    rows, columns, _ = locate(x, y, guides.depth.shape)
+    past = history.accumulated
+    mean = average(past.mean[:, rows, columns])
+    deviation = past.mean[:, rows, columns] - mean[:, None]
+    return Accumulated(
+        illumination=average(past.illumination[:, rows, columns]),
+        mean=mean,
+        variance=average(past.variance[:, rows, columns] + deviation**2),
+        length=average(past.length[None, rows, columns])[0],
+    ), found
+
+
+def temporal(
+    illumination: Array, guides: Guides, history: History | None, settings: TemporalFilter, alpha_moments: float
+) -> Accumulated:
+    """Section 2: blend the new samples into the reprojected history.
+
+    Parameters
+    ----------
+    illumination : (S, H, W, 3), this frame's, demodulated.
+    guides : Guides, this frame's.
+    history : History, or None on the first frame.
+    settings : TemporalFilter
+    alpha_moments : float
+        Least share of the new frame in the moments.
+    """
+    sample = luminance(illumination)
+    fresh = Accumulated(illumination, sample, np.zeros_like(sample), guides.hit.astype(np.float64))
+    if history is None:
+        return fresh
+    past, found = reproject(guides, history, settings)
+    length = np.minimum(past.length + 1, LENGTH_MAX[settings.half_history])
+    alpha_color = np.maximum(1 / length, settings.alpha_color)
+    share_of_moments = np.maximum(1 / length, alpha_moments)
+    innovation = sample - past.mean
+    blended = past.illumination + alpha_color[..., None] * (illumination - past.illumination)
+    return Accumulated(
+        illumination=np.where(found[..., None], blended, fresh.illumination),
+        mean=np.where(found, past.mean + share_of_moments * innovation, fresh.mean),
+        variance=np.where(found, (1 - share_of_moments) * (past.variance + share_of_moments * innovation**2), 0),
+        length=np.where(found, length, fresh.length),
+    )
+
+
+def modulate(illumination: Array, guides: Guides) -> Array:
+    """Section 5: out = sum over signals of c * albedo' + emission', (H, W, 3)."""
+    # Emission is added once, whatever the number of signals.
+    image: Array = illumination.sum(axis=0) * guides.albedo + guides.emission
+    return image
+
+
+def foremost(guides: Guides) -> tuple[Indices, Indices]:
+    """Section 6: rows and columns, each (H, W), of the nearest hit among each pixel and its eight neighbours."""
+    here = np.indices(guides.depth.shape, dtype=np.int64)
+    rows: Indices = here[0]
+    columns: Indices = here[1]
+    nearest = np.where(guides.hit, guides.depth, np.inf)
+    for offset in square(1):
+        y, x, inside = shifted(offset, guides.depth.shape)
+        nearer = inside & guides.hit[y, x] & (guides.depth[y, x] < NEARER * nearest)
+        nearest = np.where(nearer, guides.depth[y, x], nearest)
+        rows, columns = np.where(nearer, y, rows), np.where(nearer, x, columns)
+    return rows, columns
+
+
+def taa(
+    image: Array, guides: Guides, length: Array, history: Array | None, settings: TemporalFilter
+) -> tuple[Array, Array]:
+    """Section 6: temporal antialiasing with a neighbourhood-clamped history.
+
+    Parameters
+    ----------
+    image : (H, W, 3), linear HDR.
+    guides : Guides
+    length : (H, W), N, of `Accumulated`.
+    history : (H, W, 3), tone-mapped YCoCg, or None on the first frame.
+
+    Returns
+    -------
+    image : (H, W, 3), linear HDR.
+    history : (H, W, 3), for the next frame.
+    """
+    shape = guides.depth.shape
+    current = image @ YCOCG_OF_RGB.T
+    current = current / (1 + current[..., :1])
+    result = current
+    if history is not None:
+        front = foremost(guides)
+        position = reprojected(guides.motion[front])
+        x, y, weight = catmull_rom_taps(position)
+        rows, columns, _ = locate(x, y, shape)
+        past = np.einsum("thw,thwc->hwc", weight, history[rows, columns])
+        around = np.stack([current[shifted(offset, shape)[:2]] for offset in square(1)])
+        past = np.clip(past, around.min(axis=0), around.max(axis=0))
+        inside = ((position >= -0.5) & (position < np.array(shape[::-1]) - 0.5)).all(axis=-1, keepdims=True)
+        alpha = np.maximum(settings.alpha_taa, np.where(length[front] > 0, 1 / np.maximum(length[front], 1), 0))
+        result = np.where(inside, past + alpha[..., None] * (current - past), current)
+    color = result @ RGB_OF_YCOCG.T
+    return np.maximum(color / np.maximum(1 - result[..., :1], HEADROOM), 0), result
+
+
+Stages = Mapping[str, Array]
+# What one kernel makes: its name, and its stages by the names that `Denoiser.stage` knows.
+Made = tuple[str, dict[str, Array]]
+Chosen = TypeVar("Chosen", bound=TemporalFilter)
+
+
+@dataclass(frozen=True, eq=False)
+class Past:
+    """The previous frame: its guides, and its stages."""
+
+    guides: Guides
+    stages: Stages
+
+
+class TemporalOracle(ABC, Generic[Chosen]):
+    """A whole filter over a sequence, as the `Denoiser` runs it on a device.
+
+    Parameters
+    ----------
+    shape : (height, width)
+    settings : TemporalFilter
+
+    Attributes
+    ----------
+    past : Past, or None before the first frame
+        The last frame, and what the next one will read.
+    stages : dict of str to array
+        Every intermediate result of the last frame, named and shaped as by `Denoiser.stage`.
+    """
+
+    history: ClassVar[str]  # the stage that is the next frame's colour history
+
+    def __init__(self, shape: Shape, settings: Chosen) -> None:
+        self.shape: Shape = shape
+        self.settings: Chosen = settings
+        self.stages: dict[str, Array] = {}
+        self.past: Past | None = None
+
+    def reset(self) -> None:
+        """Forget the past: the next frame is a first frame."""
+        self.past = None
+
+    def denoise(self, frame: Frame) -> Array:
+        """Filter the next frame of the sequence: (H, W, 3), linear HDR."""
+        frame.check(self.shape)
+        now: dict[str, Array] = {}
+        for _, made in self.kernels(frame, now, self.past):
+            now.update(made)
+        self.past = Past(seen_guides(frame, now), now)
+        self.stages = {name: values for name, values in now.items() if name != "out"}
+        return now["out"]
+
+    def kernels(self, frame: Frame, now: Stages, past: Past | None) -> Iterator[Made]:
+        """What each kernel makes of a frame, kernel by kernel.
+
+        Parameters
+        ----------
+        frame : Frame of numpy arrays.
+        now : mapping of str to array
+            The frame's stages, looked up as kernels read them: what this yields, or what a device made.
+        past : Past, or None for a first frame.
+        """
+        settings = self.settings
+        illumination, exact = demodulate(frame, half=settings.half_history)
+        yield "demodulate", {"normal": exact.normal, "depth": exact.depth, "demodulated": illumination}
+
+        guides = seen_guides(frame, now)
+        history = History(past.guides, accumulated(past.stages, past.stages[self.history])) if past else None
+        made = temporal(now["demodulated"], guides, history, settings, self.alpha_moments)
+        yield (
+            "temporal",
+            {
+                "accumulated": made.illumination,
+                "history_length": made.length,
+                "mean": made.mean,
+                "moment_variance": made.variance,
+            },
+        )
+
+        filtered = yield from self.spatial(now, guides)
+
+        image = modulate(now[filtered], guides)
+        if not settings.taa:
+            yield "modulate", {"out": image}
+            return
+        yield "modulate", {"modulated": image}
+        before = past.stages["antialiased"] if past else None
+        resolved, tone = taa(now["modulated"], guides, now["history_length"], before, settings)
+        yield "taa", {"antialiased": tone, "out": resolved}
+
+    @property
+    @abstractmethod
+    def alpha_moments(self) -> float:
+        """Least share of a new frame in the moments."""
+
+    @abstractmethod
+    def spatial(self, now: Stages, guides: Guides) -> Generator[Made, None, str]:
+        """What the kernels between temporal and modulate make; returns the stage that the last of them made."""
+
+
+def seen_guides(frame: Frame, now: Stages) -> Guides:
+    """The guides of a frame whose surface a device may have rounded."""
+    _, exact = demodulate(frame)
+    return replace(exact, normal=now["normal"], depth=now["depth"])
+
+
+def accumulated(stages: Stages, illumination: Array) -> Accumulated:
+    """What temporal accumulation knows, out of a frame's stages."""
+    return Accumulated(illumination, stages["mean"], stages["moment_variance"], stages["history_length"])

@@ -1,0 +1,185 @@
+"""`Plan`: what a filter needs for frames with one set of fields, built once: kernels, memory, and launches."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pyopencl as cl
+
+from svgf_cl.device import programs
+from svgf_cl.device.buffers import Buffers
+from svgf_cl.device.launch import Argument, Grid, Launch, scalar_arguments
+from svgf_cl.device.layout import HALO, Layout
+from svgf_cl.device.memory_plan import memory_slots
+from svgf_cl.device.opencl_errors import allocate
+from svgf_cl.device.tuning import Tuning
+from svgf_cl.errors import SvgfError
+from svgf_cl.filters.pipeline import Access, Buffer, Pass, Pipeline
+from svgf_cl.filters.stages import Stage, stages
+
+# Is told the label and the event of every pass as soon as it is on the queue.
+AfterPass = Callable[[str, cl.Event], None]
+
+
+@dataclass(frozen=True)
+class Workplace:
+    """Where a plan's kernels run, and how their work is cut.
+
+    Parameters
+    ----------
+    queue : pyopencl.CommandQueue
+    layout : Layout
+    tuning : Tuning
+    keeps_stages : bool
+        Whether every stage is copied aside, so that all can be read after a frame.
+    """
+
+    queue: cl.CommandQueue
+    layout: Layout
+    tuning: Tuning
+    keeps_stages: bool = False
+
+
+class Plan:
+    """A pipeline made ready to run.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+    workplace : Workplace
+
+    Attributes
+    ----------
+    stages : dict of str to Stage
+        What can be read after a frame, by name.
+
+    Raises
+    ------
+    DeviceError
+        If the device has no room, or its compiler refuses a kernel.
+    """
+
+    def __init__(self, pipeline: Pipeline, workplace: Workplace) -> None:
+        if pipeline.reach > HALO:
+            raise ValueError(f"expected taps within the halo of {HALO} pixels, got some {pipeline.reach} away")
+        self.pipeline = pipeline
+        self.stages: dict[str, Stage] = stages(pipeline)
+        self._at = workplace
+        self._buffers = Buffers(
+            workplace.queue, workplace.layout, memory_slots(pipeline), copies=workplace.keeps_stages
+        )
+        self._constants = [self._uploaded(entry) for entry in pipeline.passes]
+        self._turns = [self._launches() for _ in range(2)]  # of odd and even frames: a pair's halves change places
+        self._turn = itertools.cycle(self._turns)
+        self._frame_number = 0
+
+    @property
+    def nbytes(self) -> int:
+        """Device memory held for planes, in bytes."""
+        return self._buffers.nbytes
+
+    def run(
+        self, user: Mapping[str, cl.Buffer], *, first: bool, after_pass: AfterPass | None
+    ) -> list[tuple[str, cl.Event]]:
+        """Put the passes of the next frame on the queue.
+
+        Parameters
+        ----------
+        user : mapping of str to pyopencl.Buffer
+            The user's arrays.
+        first : bool
+            Whether nothing is known of the past.
+        after_pass : AfterPass, optional
+
+        Returns
+        -------
+        list of (str, pyopencl.Event)
+            Label and event of every pass.
+        """
+        self._buffers.begin_frame()
+        if first:
+            self._buffers.forget(self.pipeline.lasting)
+            self._frame_number = 0
+        done = []
+        for launch in next(self._turn):
+            event = launch.enqueue(self._at.queue, user, {"frame_number": self._frame_number})
+            self._keep(launch.entry.writes)
+            if after_pass:
+                after_pass(launch.entry.label, event)
+            done.append((launch.entry.label, event))
+        self._frame_number += 1
+        return done
+
+    def set_scalars(self, pipeline: Pipeline) -> None:
+        """Take the numbers of a pipeline that is the same but for them."""
+        for turn in self._turns:
+            for launch, entry in zip(turn, pipeline.passes, strict=True):
+                launch.set_scalars(entry)
+        self.pipeline = pipeline
+
+    def inherit(self, other: Plan) -> bool:
+        """Take over the past from a plan for the same place; False where what is kept of it is not the same."""
+        mine, others = self.pipeline.lasting, other.pipeline.lasting
+        if any(resource not in others and not resource.tells_unknown for resource in mine):
+            return False
+        self._buffers.inherit(other._buffers, [resource for resource in mine if resource in others])
+        self._frame_number = other._frame_number
+        return True
+
+    def read(self, name: str) -> np.ndarray:
+        """A stage of the last frame, ([signals,] H, W[, channels]) float32; errors as by `raw`."""
+        stage = self.stages[name]
+        planes = self._at.layout.crop(self.raw(name))
+        return stage.image(planes)
+
+    def raw(self, name: str) -> np.ndarray:
+        """The whole buffer of a stage of the last frame, halo included, as elements of the stage's format.
+
+        Raises
+        ------
+        SvgfError
+            If its memory went to a later stage.
+        """
+        stage = self.stages[name]
+        buffer = Buffer(stage.resource)
+        if not self._buffers.survives(buffer):
+            raise SvgfError(f"stage: {name!r} was overwritten by a later pass; use Denoiser(..., keep_stages=True)")
+        return self._buffers.read(buffer).view(stage.quantity.format.dtype)
+
+    def _keep(self, writes: Sequence[Access]) -> None:
+        for each in writes:
+            if self._at.keeps_stages and isinstance(each.of, Buffer):
+                self._buffers.copy_aside(each.of)
+
+    def _uploaded(self, entry: Pass) -> dict[str, cl.Buffer]:
+        """A pass's constant arrays in device memory."""
+        queue, found = self._at.queue, {}
+        for name, values in entry.arrays.items():
+            found[name] = allocate(queue, values.nbytes, values.nbytes)
+            cl.enqueue_copy(queue, found[name], np.ascontiguousarray(values), is_blocking=True)
+        return found
+
+    def _launches(self) -> tuple[Launch, ...]:
+        """The launches of the next frame."""
+        self._buffers.begin_frame()
+        return tuple(map(self._launch, self.pipeline.passes, self._constants))
+
+    def _launch(self, entry: Pass, constants: Mapping[str, cl.Buffer]) -> Launch:
+        at = self._at
+        defines = {"VW": at.tuning.vector_width, **self.pipeline.defines}
+        kernel = cl.Kernel(programs.build(at.queue.context, at.queue.device, entry.source, defines), entry.entry)
+        own = {each.argument: self._buffers[each.of] for each in entry.accesses if isinstance(each.of, Buffer)}
+        fixed: dict[str, Argument] = {"size": at.layout.size, **scalar_arguments(entry), **constants, **own}
+        work_group = fitting(at.tuning.work_group, kernel, at.queue.device)
+        work_items = at.layout.work_items(at.tuning.vector_width, work_group, entry.row_step)
+        return Launch(entry, kernel, fixed, work_items, work_group)
+
+
+def fitting(work_group: Grid, kernel: cl.Kernel, device: cl.Device) -> Grid:
+    """A work-group cut to what a device can run of one kernel: fewer, where that takes many registers."""
+    most = kernel.get_work_group_info(cl.kernel_work_group_info.WORK_GROUP_SIZE, device)
+    along = min(work_group[0], most)
+    return along, min(work_group[1], most // along)

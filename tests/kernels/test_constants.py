@@ -1,0 +1,43 @@
+"""What the kernels and the oracle both state, each for itself so that neither copies the other's mistake, is equal."""
+
+from __future__ import annotations
+
+import re
+from importlib import resources
+
+import numpy as np
+import pytest
+
+from svgf_cl.oracle import svgf, temporal, wavelet
+
+# By the kernels' name. Where there are two values the second is that of 16-bit floats (HALF_HISTORY), or of 3x3 taps.
+EXPECTED = {
+    "MIN_ALBEDO": (temporal.ALBEDO_FLOOR,),
+    "MAX_CHANNEL": (temporal.CHANNEL_MAX,),
+    "MIN_DEPTH": (temporal.DEPTH_RANGE[0],),
+    "MAX_DEPTH": (temporal.DEPTH_RANGE[1],),
+    "MIN_NORMAL2": (temporal.NORMAL_FLOOR,),
+    "MAX_LIGHT": (temporal.ILLUMINATION_MAX[False],),  # in 16 bits the host gives it
+    "MAX_LENGTH": (temporal.LENGTH_MAX[False], temporal.LENGTH_MAX[True]),
+    "FAR": (temporal.MOTION_MAX,),
+    "ENOUGH": (temporal.HISTORY_WEIGHT,),
+    "LONG_HISTORY": (svgf.LONG_HISTORY,),
+    "NEARLY_LONG": (svgf.NEARLY_LONG,),
+    "RELATIVE_TOLERANCE": (svgf.LUMINANCE_TOLERANCE[0],),
+    "LEAST_TOLERANCE": (svgf.LUMINANCE_TOLERANCE[1],),
+    "MIDDLE": (wavelet.SPLINES[2][0], wavelet.SPLINES[1][0]),
+    "NEARER": (temporal.NEARER,),
+    "LEAST_HEADROOM": (temporal.HEADROOM,),
+}
+
+
+def stated(name: str) -> set[np.float32]:
+    """Every value that a kernel gives a name with `#define`, but those that are names themselves."""
+    files = [file for file in resources.files("svgf_cl.kernels").iterdir() if file.name.endswith((".cl", ".clh"))]
+    text = "\n".join(file.read_text(encoding="utf-8") for file in files)
+    return {np.float32(value) for value in re.findall(rf"^#define {name} ([-+.\de]+)f?\b", text, re.MULTILINE)}
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_kernels_and_oracle_state_the_same(name: str) -> None:
+    assert stated(name) == {np.float32(value) for value in EXPECTED[name]}
