@@ -15,7 +15,7 @@ QUALITIES = ("high", "balanced", "fast")
 INPUTS, OUTPUT = ("color", "albedo", "normal"), "output"  # OIDN's names; those of `Frame`, too
 
 
-class Filter:
+class OidnFilter:
     """OIDN's filter for path-traced HDR light with albedo and normal, set up and run once: what follows is steady.
 
     It reads and writes in place, without a copy, images that `load` fills.
@@ -54,7 +54,7 @@ class Filter:
         self._device = pyoidn.Device(pyoidn.OIDN_DEVICE_TYPE_CPU)  # one a filter, or they would share their memory
         self._device.set_int("numThreads", threads)
         self._device.commit()
-        self._filter = pyoidn.Filter(self._device, pyoidn.OIDN_FILTER_TYPE_RT)
+        self._filter = pyoidn.OidnFilter(self._device, pyoidn.OIDN_FILTER_TYPE_RT)
         for name, image in self._images.items():
             self._filter.set_image(name, image, pyoidn.OIDN_FORMAT_FLOAT3)
         self._filter.set_bool("hdr", True)
@@ -71,7 +71,7 @@ class Filter:
             self._images[name][:] = getattr(frame, name)
 
     def execute(self) -> None:
-        """Filter what was loaded; wait for the end."""
+        """OidnFilter what was loaded; wait for the end."""
         self._filter.execute()
 
     def check(self) -> None:
@@ -80,7 +80,7 @@ class Filter:
             raise SvgfError(f"Open Image Denoise: {complaint}")
 
     def denoise(self, frame: Frame) -> npt.NDArray[np.float32]:
-        """Filter one frame; return the result, (H, W, 3), in memory of its own."""
+        """OidnFilter one frame; return the result, (H, W, 3), in memory of its own."""
         self.load(frame)
         self.execute()
         self.check()

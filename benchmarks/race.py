@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.oidn import Filter
+from benchmarks.oidn import OidnFilter
 from svgf_cl import Denoiser
 from svgf_cl.bench.results import Result
 from svgf_cl.bench.rig import EVENT, HOST
@@ -40,7 +40,7 @@ class Spread:
 
 
 def race(
-    denoisers: Mapping[str, Denoiser], filters: Mapping[str, Filter], rounds: int, advance: Callable[[], None]
+    denoisers: Mapping[str, Denoiser], filters: Mapping[str, OidnFilter], rounds: int, advance: Callable[[], None]
 ) -> Times:
     """Let every denoiser filter the same frame of the built-in room, one after the other, round after round.
 
@@ -48,7 +48,7 @@ def race(
     ----------
     denoisers : mapping from name to Denoiser
         All of one shape, that of the frames.
-    filters : mapping from name to Filter
+    filters : mapping from name to OidnFilter
         Of the same shape.
     rounds : int, >= 1
     advance : callable

@@ -30,7 +30,7 @@ import typer
 from benchmarks.command import run
 from benchmarks.footage import FOOTAGE, Footage
 from benchmarks.measurements import Quality, quality
-from benchmarks.oidn import QUALITIES, Filter
+from benchmarks.oidn import QUALITIES, OidnFilter
 from benchmarks.presentation import markdown
 from benchmarks.provenance import provenance
 from benchmarks.race import Times, race, results
@@ -44,6 +44,7 @@ from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import SettingTexts, parse_settings, parse_size
 from svgf_cl.compare.metrics import require_flip
 from svgf_cl.device import devices
+from svgf_cl.filters.filter import Filter
 from svgf_cl.frame import Shape, extent
 from svgf_cl.io.atomic import written_whole
 from svgf_cl.io.display import Linear
@@ -127,7 +128,7 @@ def versus_oidn(
         found.write(json_)
 
 
-def compared(shape: Shape, settings: Settings, rounds: int, *, clean_aux: bool = False) -> Comparison:
+def compared(shape: Shape, settings: Filter, rounds: int, *, clean_aux: bool = False) -> Comparison:
     """Race svgf_cl, as in the paper and with `settings`, against OIDN, and hold all against the truth."""
     require_flip()
     denoisers = {f"svgf_cl {name}": Denoiser(shape, settings=s) for name, s in (("5x5", PAPER), ("default", settings))}
@@ -150,15 +151,15 @@ def compared(shape: Shape, settings: Settings, rounds: int, *, clean_aux: bool =
     return Comparison(times, memory, errors, about, tuple(results(times, selector, shape)))
 
 
-def oidn_filters(shape: Shape, device: cl.Device, clean_aux: bool) -> dict[str, Filter]:
+def oidn_filters(shape: Shape, device: cl.Device, clean_aux: bool) -> dict[str, OidnFilter]:
     """OIDN at every quality, with as many threads as a CPU device has; with all where `device` is no CPU."""
     is_cpu = bool(device.type & cl.device_type.CPU)
     threads = device.max_compute_units if is_cpu else os.cpu_count() or 1
-    return {f"OIDN {quality}": Filter(shape, quality, threads, clean_aux=clean_aux) for quality in QUALITIES}
+    return {f"OIDN {quality}": OidnFilter(shape, quality, threads, clean_aux=clean_aux) for quality in QUALITIES}
 
 
 def qualities(
-    denoisers: Mapping[str, Denoiser], filters: Mapping[str, Filter], footage: Footage, advance: Callable[[], None]
+    denoisers: Mapping[str, Denoiser], filters: Mapping[str, OidnFilter], footage: Footage, advance: Callable[[], None]
 ) -> dict[str, Quality]:
     """Hold what every denoiser makes of a footage, one signal, against the truth about it; the noise itself, too."""
     truth = [0.5 * (first + second) for first, second in footage.halves(advance)]

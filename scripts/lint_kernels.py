@@ -8,13 +8,14 @@ import itertools
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 from svgf_cl.device import programs
 from svgf_cl.filters import FILTERS
+from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.signals import SPLITS, Inputs
 
 WIDTHS = (1, 4, 8, 16)
@@ -41,14 +42,16 @@ Job = tuple[str, tuple[str, ...]]  # a source file and the compiler's options
 
 def inputs() -> Iterator[Inputs]:
     """All that frames may supply."""
-    for signals, motion, *given in itertools.product(SPLITS, (2, 3), *[(False, True)] * 3):
-        yield Inputs(signals=signals, motion=motion, **dict(zip(("albedo", "emission", "id"), given, strict=True)))
+    either = (False, True)
+    for signals, motion, albedo, emission, id_ in itertools.product(SPLITS, (2, 3), either, either, either):
+        yield Inputs(signals=signals, motion=motion, albedo=albedo, emission=emission, id=id_)
 
 
 def jobs() -> list[Job]:
     """Every source of every filter with all the macros that it may be compiled with, each once."""
     found: dict[Job, None] = {}
-    filters = [kind(taa=taa, **chosen) for kind in FILTERS.values() for taa in (False, True) for chosen in SETTINGS]
+    kinds: list[Callable[..., Filter]] = list(FILTERS.values())
+    filters = [kind(taa=taa, **chosen) for kind in kinds for taa in (False, True) for chosen in SETTINGS]
     for chosen, supplied, width in itertools.product(filters, inputs(), WIDTHS):
         pipeline = chosen.pipeline(supplied)
         for source in dict.fromkeys(entry.source for entry in pipeline.passes):

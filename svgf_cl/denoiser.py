@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -16,6 +15,7 @@ import pyopencl.array as cl_array
 from svgf_cl.device.arguments import check_filter, check_inputs, check_queue, check_shape, check_tuning, held, layout_of
 from svgf_cl.device.events import pending
 from svgf_cl.device.opencl_errors import allocate, opencl_errors
+from svgf_cl.device.process import check_process
 from svgf_cl.device.tuning import Tuning
 from svgf_cl.device.user_arrays import UserArrays, check_out
 from svgf_cl.errors import FrameError, SvgfError, shown
@@ -36,8 +36,8 @@ class Denoiser:
     """Denoises a sequence of frames of one size, one call a frame.
 
     Threads may share one: a call waits for that of another thread to end. Denoisers do not disturb each other. It may
-    stand in a ``with``, at whose end it is closed. A process that was forked off needs a denoiser of its own, and must
-    have been started afresh ("spawn") for that, as OpenCL does not survive a fork.
+    stand in a ``with``, at whose end it is closed. It does not survive a fork: a process that was forked off gets a
+    `DeviceError`, so start processes with multiprocessing's "spawn", and make a denoiser in each.
 
     Parameters
     ----------
@@ -90,7 +90,6 @@ class Denoiser:
         self._is_cut = True
         self._events: tuple[tuple[str, cl.Event], ...] = ()
         self._turn = threading.RLock()
-        self._process = os.getpid()
 
     @property
     def shape(self) -> Shape:
@@ -146,11 +145,13 @@ class Denoiser:
             check_out(out, (*self._shape, 3))
         with self._in_turn() as arrays:
             with self._opencl_errors("denoise", NOT_BEGUN):
-                plan = self._ready(Inputs.of(frame))
+                inputs = Inputs.of(frame)
+                plan = self._ready(inputs)
                 fields = {name: getattr(frame, name) for name in plan.pipeline.fields}
                 result = self._result(frame) if out is None else out
                 events = pending(wait_for, {**fields, OUT: result}, self._workplace.queue)
                 buffers = arrays.buffers(fields, result)
+            self._plan, self._inputs = plan, inputs
             self._run(plan, arrays, buffers, result, events)
         return result
 
@@ -164,7 +165,7 @@ class Denoiser:
         """
         check_inputs(inputs)
         with self._in_turn(), self._opencl_errors("warm_up", UNCHANGED):
-            self._ready(inputs)
+            self._plan, self._inputs = self._ready(inputs), inputs
             self._workplace.queue.finish()
 
     def reset(self) -> None:
@@ -283,11 +284,7 @@ class Denoiser:
     @contextmanager
     def _in_turn(self) -> Iterator[UserArrays]:
         """Around what touches the device: one thread at a time, in the process that made it, before it is closed."""
-        if os.getpid() != self._process:
-            raise SvgfError(
-                "Denoiser: expected the process that made it, got one forked off; OpenCL does not survive a fork, so "
-                "start processes with multiprocessing's 'spawn' and make a Denoiser in each"
-            )
+        check_process()
         with self._turn:
             if self._arrays is None:
                 raise SvgfError("Denoiser: expected one that is open, got one after close() or the end of its 'with'")
@@ -305,13 +302,12 @@ class Denoiser:
 
     def _ready(self, inputs: Inputs) -> Plan:
         """The plan for these inputs; a new one where they changed at a cut."""
-        if self._plan is None or (self._is_cut and inputs != self._inputs):
-            self._plan = None  # its memory first
-            self._plan, self._inputs = Plan(self._settings.pipeline(inputs), self._workplace), inputs
-            self._is_cut = True
-        if inputs != self._inputs:
+        if self._plan and inputs == self._inputs:
+            return self._plan
+        if not self._is_cut:
             raise FrameError("fields", f"{self._inputs} as before, or a call of reset", str(inputs))
-        return self._plan
+        self._plan = None  # gives its memory back first
+        return Plan(self._settings.pipeline(inputs), self._workplace)
 
     def _run(
         self,

@@ -11,8 +11,8 @@ import typer
 from svgf_cl.cli import bench_tracer
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import Earlier, SettingTexts, parse_settings, parse_size
-from svgf_cl.filters import Settings
 from svgf_cl.errors import SvgfError
+from svgf_cl.filters import Settings
 from svgf_cl.io.atomic import make_folder
 
 # Plain help, as in `svgf_cl.cli`.

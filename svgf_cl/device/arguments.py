@@ -9,6 +9,7 @@ import pyopencl as cl
 
 from svgf_cl.device import devices
 from svgf_cl.device.layout import Layout
+from svgf_cl.device.process import check_process
 from svgf_cl.device.tuning import Tuning, best_tuning
 from svgf_cl.errors import SvgfError, shown
 from svgf_cl.filters.filter import Filter
@@ -32,6 +33,7 @@ def check_inputs(inputs: Inputs) -> Inputs:
 
 def check_queue(queue: cl.CommandQueue | None) -> cl.CommandQueue:
     """A queue on the default device for None; `SvgfError` for one that may run the passes out of order, or is dead."""
+    check_process()
     if queue is None:
         return devices.default_queue()
     if not isinstance(queue, cl.CommandQueue):

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 import pyopencl as cl
 
 from svgf_cl.device import intel_runtime, probe
+from svgf_cl.device.process import check_process
 from svgf_cl.errors import DeviceError
 
 # Here, as `import svgf_cl` comes by: a loader looks once, when anyone in this process first lists the platforms.
@@ -93,6 +94,7 @@ def list_devices(*, refresh: bool = False) -> list[DeviceReport]:
     list of DeviceReport
         At most one `is_default`; none is where `choose` raises.
     """
+    check_process()
     reports = _survey(refresh=refresh)
     try:
         default = choose(reports)
@@ -178,6 +180,7 @@ def create_queue(device: cl.Device) -> cl.CommandQueue:
     -------
     pyopencl.CommandQueue
     """
+    check_process()
     with _lock:
         context = _context(device)
     return cl.CommandQueue(context, device, properties=cl.command_queue_properties.PROFILING_ENABLE)

@@ -101,18 +101,12 @@ def options_of(name: str, defines: Mapping[str, Define]) -> tuple[str, ...]:
     return options(mentioned(name, {**CONSTANTS, **defines}))
 
 
-@functools.cache
-def words(name: str) -> frozenset[str]:
-    """Return all that may be a macro in what is compiled for a source file."""
-    return frozenset(re.findall(r"\w+", re.sub(r"//.*", "", source(name))))
-
-
 def mentioned(name: str, defines: Mapping[str, Define]) -> dict[str, Define]:
     """Return the macros that a source file mentions; any other would only have it compiled again.
 
     The channels of a quantity are mentioned where it is: the kernels' `PLANE` puts the two names together.
     """
-    known = words(name)
+    known = set(re.findall(r"\w+", re.sub(r"//.*", "", source(name))))
     return {macro: value for macro, value in defines.items() if macro.removesuffix("_CHANNELS") in known}
 
 

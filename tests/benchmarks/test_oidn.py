@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from benchmarks import oidn
-from benchmarks.oidn import QUALITIES, Filter, require_oidn
+from benchmarks.oidn import QUALITIES, OidnFilter, require_oidn
 from svgf_cl import Frame, SvgfError
 from svgf_cl.io.synthetic import room_frames
 
@@ -29,7 +29,7 @@ def test_what_to_install_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("quality", QUALITIES)
 def test_noise_goes_and_light_stays(frame: Frame, quality: str) -> None:
     pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
-    rival = Filter(SHAPE, quality, threads=1)
+    rival = OidnFilter(SHAPE, quality, threads=1)
     clean = rival.denoise(frame)
     light = 0.5 * frame.albedo  # what the room's noise averages to
     assert np.abs(clean - light).mean() < 0.2 * np.abs(frame.color - light).mean()
@@ -41,11 +41,11 @@ def test_errors_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
     monkeypatch.setattr(oidn, "INPUTS", ("albedo", "normal"))  # no filter without a color
     with pytest.raises(SvgfError, match="Open Image Denoise: "):
-        Filter(SHAPE, "fast", threads=1)
+        OidnFilter(SHAPE, "fast", threads=1)
 
 
 def test_memory_is_that_of_the_network() -> None:
     """Its activations outweigh the images."""
     pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
     pixels = 640 * 360
-    assert 100 < Filter((360, 640), "fast", threads=1).nbytes / pixels < 2000
+    assert 100 < OidnFilter((360, 640), "fast", threads=1).nbytes / pixels < 2000

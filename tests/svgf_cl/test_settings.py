@@ -1,4 +1,4 @@
-"""Settings: every value within its range is taken, everything else is refused by name."""
+"""Settings: every value that a setting may have is taken, everything else is refused by name."""
 
 from __future__ import annotations
 
@@ -9,27 +9,43 @@ from typing import Any
 import numpy as np
 import pytest
 
-from svgf_cl import Settings, SettingsError
-from svgf_cl.settings import CHOICES, RANGES
+from svgf_cl import Eaw, Settings, SettingsError
+from svgf_cl.filters import FILTERS
+from svgf_cl.settings import REASON, Choice, Range, Switch, defaults, domains
 
-WHOLE = ("iterations",)
-SWITCHES = ("taa", "half_guides", "half_history")
+DOMAINS = domains(Settings)
+RANGES = {name: domain for name, domain in DOMAINS.items() if isinstance(domain, Range)}
+CHOICES = {name: domain.words for name, domain in DOMAINS.items() if isinstance(domain, Choice)}
+SWITCHES = [name for name, domain in DOMAINS.items() if isinstance(domain, Switch)]
+WHOLE = [name for name, domain in RANGES.items() if domain.whole]
 every_number = pytest.mark.parametrize("name", RANGES)
+every_filter = pytest.mark.parametrize("kind", FILTERS.values())
 
 
-def test_every_field_is_checked() -> None:
-    assert {field.name for field in fields(Settings)} == {*RANGES, *CHOICES, *SWITCHES}
+@every_filter
+def test_every_setting_has_a_reason_and_a_default_that_it_may_have(kind: type[Settings] | type[Eaw]) -> None:
+    for field in fields(kind):
+        assert domains(kind)[field.name].holds(field.default)
+        assert field.metadata[REASON]
+
+
+@every_filter
+def test_the_docstring_tells_every_setting(kind: type[Settings] | type[Eaw]) -> None:
+    assert kind.__doc__ is not None
+    for name, default in defaults(kind).items():
+        assert f"\n{name} : " in kind.__doc__
+        assert f"default {default!r}" in kind.__doc__
 
 
 @every_number
 def test_ends_of_the_range_are_taken(name: str) -> None:
-    for value in RANGES[name]:
+    for value in (RANGES[name].least, RANGES[name].greatest):
         assert getattr(Settings(**{name: value}), name) == value
 
 
 @every_number
 def test_beyond_the_range_is_refused(name: str) -> None:
-    low, high = RANGES[name]
+    low, high = RANGES[name].least, RANGES[name].greatest
     beyond = (low - 1, high + 1) if name in WHOLE else (np.nextafter(low, -2e3), np.nextafter(high, 2e3))
     for value in (*beyond, -np.inf, np.inf, np.nan):
         with pytest.raises(SettingsError, match=rf"Settings\.{name}: expected .* in .*, got"):
@@ -51,7 +67,9 @@ def test_whole_numbers_must_be_whole(name: str) -> None:
 
 @pytest.mark.parametrize("value", [0, 0.5, np.float32(0.5), np.float64(0.5), Fraction(1, 2)])
 def test_any_real_number_will_do(value: Any) -> None:
-    assert Settings(alpha_color=value).alpha_color == value
+    chosen = Settings(alpha_color=value).alpha_color
+    assert chosen == value
+    assert type(chosen) is float
 
 
 @pytest.mark.parametrize("name", CHOICES)
@@ -70,12 +88,11 @@ def test_switches_are_bools(name: str, value: Any) -> None:
         Settings(**{name: value})
 
 
+def test_errors_name_the_filter() -> None:
+    with pytest.raises(SettingsError, match=r"Eaw\.sigma_color: expected a number in"):
+        Eaw(sigma_color=-1)
+
+
 def test_is_frozen() -> None:
     with pytest.raises(FrozenInstanceError):
         Settings().taa = True  # type: ignore[misc]
-
-
-def test_no_number_compiles_anew() -> None:
-    assert Settings(**{name: RANGES[name][1] for name in RANGES}).defines == Settings().defines
-    chosen = Settings(taa=True, precision="fast", taps="3x3", half_guides=True, half_history=True).defines
-    assert chosen == {"TAA": 1, "FAST": 1, "RADIUS": 1, "HALF_GUIDES": 1, "HALF_HISTORY": 1}

@@ -7,23 +7,23 @@ from dataclasses import replace
 import pytest
 
 from svgf_cl import Settings
-from svgf_cl.bench.cost import Cost, cost
-from svgf_cl.bench.loads import Loads
-from svgf_cl.filters.pipeline import Inputs, pipeline
+from svgf_cl.bench.cost import Cost, Loads, cost
+from svgf_cl.filters.signals import SPLITS, Inputs, Signal
 
-INPUTS = Inputs(signals=1, motion=3, albedo=True, emission=False, id=True)
+INPUTS = Inputs(motion=3, albedo=True, id=True)
+TWO = SPLITS[0]
 
 
 def costs(inputs: Inputs, settings: Settings | None = None) -> dict[str, Cost]:
     settings = settings or Settings(taa=True)
-    return {entry.name: cost(entry, inputs, settings) for entry in pipeline(inputs, settings)}
+    return {entry.label: cost(entry) for entry in settings.pipeline(inputs).passes}
 
 
-@pytest.mark.parametrize("signals", [1, 2])
+@pytest.mark.parametrize("signals", SPLITS)
 @pytest.mark.parametrize("motion", [2, 3])
 @pytest.mark.parametrize("optional", [True, False])
-def test_every_pass_has_a_cost(signals: int, motion: int, optional: bool) -> None:
-    inputs = Inputs(signals, motion, albedo=optional, emission=optional, id=optional)
+def test_every_pass_has_a_cost(signals: tuple[Signal, ...], motion: int, optional: bool) -> None:
+    inputs = Inputs(signals=signals, motion=motion, albedo=optional, emission=optional, id=optional)
     assert all(each.bytes > 0 and each.flops > 0 for each in costs(inputs).values())
 
 
@@ -45,7 +45,7 @@ def test_what_a_frame_lacks_costs_nothing() -> None:
 
 
 def test_two_signals_share_the_geometry() -> None:
-    one, two = costs(INPUTS)["atrous 1"], costs(replace(INPUTS, signals=2))["atrous 1"]
+    one, two = costs(INPUTS)["atrous 1"], costs(replace(INPUTS, signals=TWO))["atrous 1"]
     assert one.flops < two.flops < 2 * one.flops
     assert two.bytes - one.bytes == 4 * (4 + 4)
 
@@ -64,6 +64,55 @@ def test_16_bits_move_fewer_bytes() -> None:
     assert full["atrous 1"].bytes - half["atrous 1"].bytes == 2 * (3 + 4 + 4)  # normals, light in and out
     assert full["demodulate"].bytes - half["demodulate"].bytes == 2 * (3 + 3)
     assert full["modulate"].bytes - half["modulate"].bytes == 2 * 3
+
+
+def loaded(name: str, inputs: Inputs = INPUTS, settings: Settings | None = None) -> Loads:
+    return costs(inputs, settings)[name].loads
+
+
+def test_without_neighbours_each_plane_is_loaded_once() -> None:
+    assert loaded("demodulate") == Loads(4 * (3 + 3 + 3 + 1 + 1))  # color albedo normal depth id
+    assert loaded("variance") == Loads(4 * 2)  # length and variance
+    assert loaded("modulate") == Loads(4 * (3 + 3))
+
+
+@pytest.mark.parametrize(("taps", "columns"), [("3x3", 3), ("5x5", 5)])
+def test_taps_in_the_own_column_are_aligned(taps: str, columns: int) -> None:
+    """Normal, depth, colour and variance at every tap, depth and variance around the pixel too."""
+    settings = Settings(taps=taps)
+    near = 2 * 3  # in each column, two planes
+    assert loaded("atrous 3", settings=settings) == Loads(
+        4 * (8 * columns + near - 2), 4 * (8 * columns * (columns - 1) + 2 * near)
+    )
+
+
+def test_the_nearest_taps_are_the_nearest_neighbours() -> None:
+    assert loaded("atrous 1", settings=Settings(taps="3x3")) == Loads(4 * 8 * 3, 4 * 8 * 6)
+
+
+def test_taps_a_whole_vector_apart_are_aligned() -> None:
+    assert loaded("atrous 5", settings=Settings(taps="3x3")).offset == 4 * 2 * 6, "the pixel's neighbours are left"
+    wide = [loaded(f"atrous {level}", settings=Settings(taps="5x5")).offset for level in (3, 4)]
+    assert wide[0] - wide[1] == 4 * 8 * 2 * 5, "its outer columns"
+
+
+def test_history_lies_anywhere() -> None:
+    temporal = loaded("temporal")
+    assert temporal.offset == 4 * (2 + 4 * (5 + 3 + 3))  # slope; guide, colour and moments
+    assert temporal.aligned == 4 * (3 + 5 + 2 + 3)  # motion, guide, slope, colour
+    assert loaded("taa").offset == 4 * (6 * (1 + 3) + 16 * 3)
+
+
+def test_signals_share_loads_of_what_tells_surfaces_apart() -> None:
+    one, two = (loaded("atrous 3", replace(INPUTS, signals=split)) for split in reversed(SPLITS))
+    assert one.bytes < two.bytes < 2 * one.bytes
+
+
+def test_16_bits_load_half_as_many_bytes() -> None:
+    full, half = (
+        loaded("atrous 3", settings=Settings(half_guides=chosen, half_history=chosen)) for chosen in (False, True)
+    )
+    assert full.bytes - half.bytes == 2 * (9 * (3 + 3 + 1) + 8)  # normals, colour, variance and its neighbours
 
 
 def test_costs_scale() -> None:

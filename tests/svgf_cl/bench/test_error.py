@@ -31,7 +31,7 @@ def test_errors_are_over_all_frames(monkeypatch: pytest.MonkeyPatch) -> None:
             return np.full((*error.ERROR_SHAPE, 3), 2.0)
 
     monkeypatch.setattr(error, "Denoiser", Off)
-    monkeypatch.setattr(error, "Reference", Truth)
+    monkeypatch.setattr(error, "oracle_of", Truth)
     worst, rms = error.error_to_oracle(Settings(), frames=3)
     assert worst == pytest.approx(0.4)
     assert rms == pytest.approx((0.25 / 3) ** 0.5)

@@ -1,4 +1,4 @@
-"""Device memory of a denoiser: what it holds at first, what is swapped, how much there is."""
+"""Device memory of a denoiser: what it holds at first and after a cut, what is swapped, how much there is."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ import pyopencl as cl
 import pytest
 from numpy.testing import assert_array_equal
 
-from svgf_cl import DeviceError
+from svgf_cl import DeviceError, Inputs, Settings
 from svgf_cl.device.buffers import Buffers
 from svgf_cl.device.layout import Layout
 from svgf_cl.device.memory_plan import memory_slots
-from svgf_cl.filters.formats import stored
-from svgf_cl.filters.pipeline import OUT, PREVIOUS, Inputs, history_pairs, pipeline
-from svgf_cl.settings import Settings
+from svgf_cl.filters.pipeline import Buffer, Life
 from tests.faults import failing
 from tests.frames import FULL, SHAPE, bumpy_sequence
 
 INPUTS = Inputs.of(bumpy_sequence(FULL, count=1)[0])
 LAYOUT = Layout(*SHAPE)
-PASSES = pipeline(INPUTS, Settings(taa=True))
-WRITTEN = {name for step in PASSES for name in step.writes} - {OUT}
-SLOTS = memory_slots(PASSES, {name: stored(name, INPUTS, Settings()) for name in WRITTEN})
+PIPELINE = Settings(taa=True).pipeline(INPUTS)
+SLOTS = memory_slots(PIPELINE)
+RESOURCES = {resource.name: resource for resource in PIPELINE.resources}
+LASTING = {resource.name: Buffer(resource, resource.life is Life.PAIR) for resource in PIPELINE.lasting}
+EVERY = [*map(Buffer, PIPELINE.resources), *(buffer for buffer in LASTING.values() if buffer.previous)]
 
 
 @pytest.fixture
@@ -29,52 +29,83 @@ def buffers(queue: cl.CommandQueue) -> Buffers:
     return Buffers(queue, LAYOUT, SLOTS)
 
 
+def now(name: str) -> Buffer:
+    return Buffer(RESOURCES[name])
+
+
+def before(name: str) -> Buffer:
+    return Buffer(RESOURCES[name], previous=True)
+
+
 def write(queue: cl.CommandQueue, buffer: cl.Buffer, value: float) -> None:
     cl.enqueue_fill_buffer(queue, buffer, np.float32(value), 0, buffer.size)
 
 
-def test_history_begins_blank(buffers: Buffers) -> None:
-    for pair in history_pairs(PASSES):
-        for name in (pair, PREVIOUS + pair):
-            assert_array_equal(buffers.read(name), np.float32(np.nan if "antialiased" in name else 0))
-    assert_array_equal(buffers.read("history"), 0)
+def test_all_is_zero_at_first(buffers: Buffers) -> None:
+    for buffer in EVERY:
+        assert_array_equal(buffers.read(buffer), 0)
+
+
+def test_what_is_forgotten_says_so_and_the_rest_stays(buffers: Buffers, queue: cl.CommandQueue) -> None:
+    """Depth is 0, as at a miss, and the antialiased picture NaN: little to write, as a cut shall cost little."""
+    for buffer in EVERY:
+        write(queue, buffers[buffer], 7)
+    buffers.forget(PIPELINE.lasting)
+    guide = buffers.read(before("guide")).reshape(-1, LAYOUT.plane)
+    assert_array_equal(guide[0], 0)
+    assert_array_equal(guide[1:], 7)
+    assert_array_equal(buffers.read(before("antialiased"))[: 3 * LAYOUT.plane], np.nan)
+    for name in ("moments", "level_1"):
+        assert_array_equal(buffers.read(LASTING[name]), 7)
+    for name in ("guide", "antialiased"):
+        assert_array_equal(buffers.read(now(name)), 7)
+
+
+def test_another_inherits_what_was_written_last(buffers: Buffers, queue: cl.CommandQueue) -> None:
+    heir = Buffers(queue, LAYOUT, SLOTS)
+    for value, resource in enumerate(PIPELINE.lasting, start=1):
+        write(queue, buffers[Buffer(resource)], value)
+    heir.inherit(buffers, PIPELINE.lasting)
+    heir.begin_frame()
+    for value, buffer in enumerate(LASTING.values(), start=1):
+        nbytes = LAYOUT.nbytes(buffer.resource.planes.depth)
+        assert_array_equal(heir.read(buffer)[: nbytes // 4], value)
 
 
 def test_nbytes_is_all_memory(buffers: Buffers) -> None:
-    every = [*WRITTEN, *(PREVIOUS + name for name in history_pairs(PASSES))]
-    assert buffers.nbytes == sum(b.size for b in {buffers[name].int_ptr: buffers[name] for name in every}.values())
+    assert buffers.nbytes == sum(b.size for b in {buffers[each].int_ptr: buffers[each] for each in EVERY}.values())
 
 
 def test_what_was_written_becomes_history(buffers: Buffers) -> None:
-    guide, previous = buffers["guide"], buffers["previous guide"]
+    guide, previous = buffers[now("guide")], buffers[before("guide")]
     buffers.begin_frame()
-    assert (buffers["guide"], buffers["previous guide"]) == (previous, guide)
+    assert (buffers[now("guide")], buffers[before("guide")]) == (previous, guide)
 
 
 def test_a_guest_goes_where_its_memory_goes(buffers: Buffers) -> None:
     for _ in range(2):
-        assert buffers["level 3"] is buffers["previous guide"]
+        assert buffers[now("level_3")] is buffers[before("guide")]
         buffers.begin_frame()
 
 
 def test_last_owner_of_shared_memory_survives(buffers: Buffers) -> None:
-    assert buffers.survives("guide")
-    assert buffers.survives("modulated")
-    assert not buffers.survives("demodulated")
+    assert buffers.survives(now("guide"))
+    assert buffers.survives(now("modulated"))
+    assert not buffers.survives(now("demodulated"))
 
 
 def test_a_copy_survives_the_next_owner(queue: cl.CommandQueue) -> None:
     buffers = Buffers(queue, LAYOUT, SLOTS, copies=True)
     for value, name in enumerate(("demodulated", "accumulated")):
-        write(queue, buffers[name], value)
-        buffers.copy_aside(name)
-        assert buffers.survives(name)
-    assert_array_equal(buffers.read("demodulated"), 0)
-    assert_array_equal(buffers.read("accumulated"), 1)
+        write(queue, buffers[now(name)], value)
+        buffers.copy_aside(now(name))
+        assert buffers.survives(now(name))
+    assert_array_equal(buffers.read(now("demodulated")), 0)
+    assert_array_equal(buffers.read(now("accumulated")), 1)
 
 
 def test_copies_count_as_memory(buffers: Buffers, queue: cl.CommandQueue) -> None:
-    copies = sum(buffers[name].size for name in WRITTEN)
+    copies = sum(buffers[Buffer(resource)].size for resource in PIPELINE.resources)
     assert Buffers(queue, LAYOUT, SLOTS, copies=True).nbytes == buffers.nbytes + copies
 
 

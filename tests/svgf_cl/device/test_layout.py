@@ -25,7 +25,7 @@ def test_crop_finds_every_pixel(layout: Layout, count: int) -> None:
 
 @pytest.mark.parametrize(("side", "indexable"), [(16000, True), (17000, False)])
 def test_indices_have_32_bits(side: int, indexable: bool) -> None:
-    assert Layout(side, side).indexable == indexable
+    assert Layout(side, side).indexable(8) == indexable
 
 
 @given(layouts)

@@ -17,10 +17,10 @@ SQUARE = "kernel void square(global float *a) { a[get_global_id(0)] = SCALE * SC
 
 @pytest.fixture
 def stage(monkeypatch):
-    """A function that makes a source a stage, and returns the stage's name."""
+    """A function that makes a text a source file, and returns its name."""
 
     def add(text: str) -> str:
-        monkeypatch.setattr(programs, "source", lambda stage: text)
+        monkeypatch.setattr(programs, "source", lambda name: text)
         programs._build.cache_clear()
         return "invented"
 
@@ -28,14 +28,14 @@ def stage(monkeypatch):
     programs._build.cache_clear()
 
 
-def test_the_kernel_files_are_the_stages():
-    assert {"modulate", "temporal", "variance", "atrous"} <= set(programs.stages())
+def test_names_are_those_of_the_kernel_files():
+    assert {"modulate", "temporal", "variance", "atrous"} <= set(programs.names())
 
 
 def test_the_header_comes_first():
     source = programs.source("atrous")
-    assert source.startswith('#line 1 "common.clh"\n')
-    assert 0 < source.index("#define HALO") < source.index('\n#line 1 "atrous.cl"\n') < source.index("KERNEL atrous")
+    assert source.startswith('#line 1 "vectors.clh"\n')
+    assert 0 < source.index("#define PLANE") < source.index('\n#line 1 "atrous.cl"\n') < source.index("KERNEL atrous")
     assert "#include" not in source
 
 

@@ -13,10 +13,10 @@ import pyopencl as cl
 import pytest
 
 from svgf_cl import Denoiser, DeviceError, SvgfError, Tuning
-from svgf_cl.denoiser import fitting
 from svgf_cl.device import tuning
 from svgf_cl.device.launch import Grid
 from svgf_cl.device.tuning import best_tuning, default_tuning, forget_tuning, store_tuning, stored_tuning
+from svgf_cl.plan import fitting
 from tests.denoising import vector_width
 from tests.frames import wall
 

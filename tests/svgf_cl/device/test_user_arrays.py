@@ -199,21 +199,20 @@ class TestInPlace:
         assert_array_equal(out, expected)
 
     def test_after_an_error_nothing_reads_the_arrays(self, in_place: Denoiser, monkeypatch: pytest.MonkeyPatch) -> None:
-        go, events = cl.UserEvent(in_place.queue.context), []
-        run = in_place._run
+        events: list[cl.Event] = []
 
-        def fail_at_third(*arguments: Any) -> cl.Event:
-            if len(events) == 2:
+        def fail_after_third(_: str, event: cl.Event) -> None:
+            events.append(event)
+            if len(events) == 3:
                 raise KeyboardInterrupt
-            events.append(run(*arguments))
-            return events[-1]
 
-        monkeypatch.setattr(in_place, "_run", fail_at_third)
+        in_place = Denoiser(SHAPE, queue=in_place.queue, after_pass=fail_after_third)
+        go = cl.UserEvent(in_place.queue.context)
         release = threading.Timer(0.1, go.set_status, [cl.command_execution_status.COMPLETE])
         release.start()
         with pytest.raises(KeyboardInterrupt):
             in_place.denoise(FRAME, wait_for=[go])
-        assert [event.command_execution_status for event in events] == [cl.command_execution_status.COMPLETE] * 2
+        assert [event.command_execution_status for event in events] == [cl.command_execution_status.COMPLETE] * 3
 
 
 class TestOutput:

@@ -1,14 +1,12 @@
-"""Planes in 32 and in 16 bits: how much they are, and which settings choose them."""
+"""Planes in 32 and in 16 bits: how much they are, and what their elements stand for."""
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
-from svgf_cl import Settings
-from svgf_cl.filters.formats import Planes, stored
-from svgf_cl.filters.pipeline import Inputs
-
-INPUTS = Inputs(signals=2, motion=3, albedo=False, emission=False, id=True)
+from svgf_cl.filters.formats import HALF_MAX, SNORM_MAX, Format, Planes
 
 
 @pytest.mark.parametrize(("planes", "bits"), [(Planes(3), 96), (Planes(0, 3), 48), (Planes(1, 3), 80)])
@@ -26,16 +24,22 @@ def test_mixed(planes: Planes, mixed: bool) -> None:
 
 
 @pytest.mark.parametrize(
-    ("buffer", "chosen", "expected"),
+    ("format_", "elements", "expected"),
     [
-        ("guide", {}, Planes(5)),
-        ("previous guide", {"half_guides": True}, Planes(2, 3)),
-        ("guide", {"half_history": True}, Planes(5)),
-        ("level 3", {}, Planes(8)),
-        ("level 3", {"half_history": True}, Planes(0, 8)),
-        ("previous moments", {"half_history": True}, Planes(0, 5)),
-        ("modulated", {"half_guides": True, "half_history": True}, Planes(3)),
+        (Format.FLOAT, [0.5, -2.0], [0.5, -2.0]),
+        (Format.SNORM, [SNORM_MAX, -SNORM_MAX], [1.0, -1.0]),
+        (Format.HALF, [0.5, HALF_MAX], [0.5, HALF_MAX]),
+        (Format.ROOT, [0.5, HALF_MAX], [0.25, HALF_MAX**2]),
     ],
 )
-def test_settings_choose(buffer: str, chosen: dict, expected: Planes) -> None:
-    assert stored(buffer, INPUTS, Settings(**chosen)) == expected
+def test_decoding(format_: Format, elements: list[float], expected: list[float]) -> None:
+    stored = np.array(elements, format_.dtype)
+    found = format_.decoded(stored)
+    assert found.dtype == np.float32
+    assert_allclose(found, expected)
+    assert not np.shares_memory(found, stored)
+    assert format_.nbytes == stored.itemsize
+
+
+def test_the_greatest_16_bit_float_is_numpys() -> None:
+    assert_array_equal(HALF_MAX, np.finfo(np.float16).max)

@@ -1,82 +1,148 @@
-"""The pass table: everything read was written before, and everything written is read."""
+"""Pipelines: everything read was written before, everything written is read, and kernels find every plane."""
 
 from __future__ import annotations
 
-import numpy as np
+import math
+
 import pytest
 from hypothesis import given
-from hypothesis import strategies as st
 
-from svgf_cl import Settings
-from svgf_cl.filters.pipeline import HISTORY, OUT, PREVIOUS, Inputs, history_pairs, kind_of, pipeline
-from tests.frames import FULL, PLAIN, SPLIT, bumpy, only
+from svgf_cl import Eaw, Inputs, Settings
+from svgf_cl.device.layout import HALO
+from svgf_cl.filters.formats import Format, Planes
+from svgf_cl.filters.pipeline import OUT, Buffer, Life, Pass, Pipeline, Quantity, Resource, access, user
+from svgf_cl.filters.taps import grid
+from tests.svgf_cl.filters.strategies import every_filter, every_inputs, every_pipeline
 
-every_inputs = st.builds(
-    Inputs,
-    signals=st.sampled_from((1, 2)),
-    motion=st.sampled_from((2, 3)),
-    albedo=st.booleans(),
-    emission=st.booleans(),
-    id=st.booleans(),
-)
-every_settings = st.builds(Settings, iterations=st.integers(1, 5), taa=st.booleans())
+RGB = Resource("rgb", "picture", (Quantity("color", 3),))
 
 
-@pytest.mark.parametrize(
-    ("fields", "motion", "expected"),
-    [
-        (PLAIN, 2, Inputs(signals=1, motion=2, albedo=False, emission=False, id=False)),
-        (FULL, 3, Inputs(signals=1, motion=3, albedo=True, emission=True, id=True)),
-        (SPLIT, 3, Inputs(signals=2, motion=3, albedo=True, emission=True, id=True)),
-        ((*SPLIT, "color"), 3, Inputs(signals=2, motion=3, albedo=True, emission=True, id=True)),
-    ],
-)
-def test_inputs_are_the_frames_fields(fields: tuple[str, ...], motion: int, expected: Inputs) -> None:
-    inputs = Inputs.of(only(bumpy(np.random.default_rng(0)), fields, motion))
-    assert inputs == expected
-    assert set(inputs.fields) == {"normal", "depth", "motion", *fields} - ({"color"} if inputs.signals == 2 else set())
+class TestResource:
+    def test_planes_of_a_quantity_lie_together_signal_by_signal(self) -> None:
+        light = Resource("light", "light", (Quantity("color", 3, signals=2), Quantity("variance", signals=2)))
+        assert light.defines == {
+            "LIGHT_COLOR": 0,
+            "LIGHT_COLOR_CHANNELS": 3,
+            "LIGHT_VARIANCE": 6,
+            "LIGHT_VARIANCE_CHANNELS": 1,
+        }
+
+    def test_planes_are_counted_by_their_width(self) -> None:
+        guide = Resource("guide", "guide", (Quantity("depth"), Quantity("normal", 3, format=Format.SNORM)))
+        assert guide.planes == Planes(1, 3)
+
+    @pytest.mark.parametrize(
+        "formats",
+        [(Format.SNORM, Format.FLOAT), (Format.FLOAT, Format.SNORM, Format.HALF)],
+        ids=["32 bits behind 16", "two in 16 bits behind one in 32"],
+    )
+    def test_what_kernels_could_not_address_is_refused(self, formats: tuple[Format, ...]) -> None:
+        with pytest.raises(ValueError, match="mixed: expected at most one quantity in 16 bits, behind those in 32"):
+            Resource("mixed", "mixed", tuple(Quantity(f"q{i}", format=each) for i, each in enumerate(formats)))
 
 
-@given(every_inputs, every_settings)
-def test_names_are_unique(inputs: Inputs, settings: Settings) -> None:
-    names = [step.name for step in pipeline(inputs, settings)]
-    assert len(set(names)) == len(names)
+class TestAccess:
+    def test_takes_all_at_the_pixel_unless_told_otherwise(self) -> None:
+        (use,) = access(RGB).uses
+        assert (use.quantity, use.taps) == (RGB.quantities[0], grid(0))
+        assert access(RGB, taps={}).uses == ()
+
+    def test_names_the_argument(self) -> None:
+        assert [access(RGB).argument, access(RGB, previous=True).argument] == ["rgb", "previous_rgb"]
+        assert access(RGB, "target").argument == "target"
+
+    @pytest.mark.parametrize(("name", "channels"), [("color", 3), ("depth", 1), ("id", 1), ("motion", 3), (OUT, 3)])
+    def test_knows_the_users_arrays(self, name: str, channels: int) -> None:
+        assert user(name).uses[0].quantity.nbytes == 4 * channels
 
 
-@given(every_inputs, every_settings)
-def test_everything_read_is_there(inputs: Inputs, settings: Settings) -> None:
-    passes = pipeline(inputs, settings)
-    there = {*inputs.fields, *HISTORY, *(PREVIOUS + name for name in history_pairs(passes))}  # from the last frame
-    for step in passes:
-        assert there.issuperset(step.reads)
-        there |= set(step.writes)
-    assert OUT in passes[-1].writes
+class TestPipeline:
+    def test_kinds_that_disagree_are_refused(self) -> None:
+        other = Resource("other", "picture", (Quantity("depth"), Quantity("color", 3)))
+        passes = (Pass("a", "a", writes=(access(RGB), access(other))),)
+        with pytest.raises(ValueError, match="other: expected PICTURE_COLOR 0 as in others, got 1"):
+            _ = Pipeline(passes).defines
+
+    def test_numbers_alone_make_no_other_kernel(self) -> None:
+        inputs = Inputs.every()
+        plain = Settings().pipeline(inputs).without_scalars()
+        assert Settings(sigma_depth=2, alpha_moments=0.5).pipeline(inputs).without_scalars() == plain
+        assert Settings(iterations=4).pipeline(inputs).without_scalars() != plain
+        assert Settings(precision="fast").pipeline(inputs).without_scalars() != plain
+
+    @pytest.mark.parametrize(
+        ("name", "chosen", "expected"),
+        [
+            ("guide", {}, Planes(5)),
+            ("guide", {"half_guides": True}, Planes(2, 3)),
+            ("guide", {"half_history": True}, Planes(5)),
+            ("level_3", {}, Planes(8)),
+            ("level_3", {"half_history": True}, Planes(0, 8)),
+            ("moments", {"half_history": True}, Planes(0, 5)),
+            ("modulated", {"half_guides": True, "half_history": True}, Planes(3)),
+        ],
+    )
+    def test_settings_choose_how_planes_are_kept(self, name: str, chosen: dict, expected: Planes) -> None:
+        resources = Settings(taa=True, **chosen).pipeline(Inputs.every()).resources
+        assert [resource.planes for resource in resources if resource.name == name] == [expected]
+
+    def test_the_largest_buffer_holds_colour_and_variance_of_two_signals(self) -> None:
+        assert Settings().pipeline(Inputs.every()).widest == 8
 
 
-def passes_writes(passes: tuple) -> set[str]:
-    return {name for step in passes for name in step.writes}
+class TestEveryFilter:
+    @given(every_pipeline)
+    def test_names_are_unique(self, pipeline: Pipeline) -> None:
+        for names in (
+            [entry.label for entry in pipeline.passes],
+            [resource.name for resource in pipeline.resources],
+            [name for name, _, _ in pipeline.shown()],
+        ):
+            assert len(set(names)) == len(names)
 
+    @given(every_pipeline)
+    def test_arguments_of_a_kernel_are_unique(self, pipeline: Pipeline) -> None:
+        for entry in pipeline.passes:
+            assert len(set(entry.arguments)) == len(entry.arguments)
 
-@given(every_inputs, every_settings)
-def test_every_field_and_every_result_is_read(inputs: Inputs, settings: Settings) -> None:
-    passes = pipeline(inputs, settings)
-    reads = {name.removeprefix("previous ") for step in passes for name in step.reads}
-    assert reads == {*inputs.fields, *passes_writes(passes)} - {OUT}
+    @given(every_filter, every_inputs)
+    def test_everything_read_is_there(self, filter_: Settings | Eaw, inputs: Inputs) -> None:
+        pipeline = filter_.pipeline(inputs)
+        there: set[Buffer | str] = {*inputs.fields}
+        for resource in pipeline.lasting:  # from the last frame
+            there.add(Buffer(resource, previous=resource.life is Life.PAIR))
+        for entry in pipeline.passes:
+            assert there.issuperset(each.of for each in entry.reads)
+            there |= {each.of for each in entry.writes}
+        assert OUT in {each.of for each in pipeline.passes[-1].writes}
 
+    @given(every_filter, every_inputs)
+    def test_every_field_and_every_result_is_read(self, filter_: Settings | Eaw, inputs: Inputs) -> None:
+        pipeline = filter_.pipeline(inputs)
+        read = {each.of.resource for entry in pipeline.passes for each in entry.reads if isinstance(each.of, Buffer)}
+        assert read == set(pipeline.resources)
+        assert set(pipeline.fields) == set(inputs.fields)
 
-@given(every_inputs, st.integers(1, 5), st.booleans())
-def test_levels_double_their_step(inputs: Inputs, iterations: int, taa: bool) -> None:
-    passes = pipeline(inputs, Settings(iterations=iterations, taa=taa))
-    assert [step.step for step in passes if step.kernel == "atrous"] == [2**level for level in range(iterations)]
+    @given(every_pipeline)
+    def test_every_quantity_is_written(self, pipeline: Pipeline) -> None:
+        written = {
+            (each.of.resource.name, use.quantity.name)
+            for entry in pipeline.passes
+            for each in entry.writes
+            for use in each.uses
+            if isinstance(each.of, Buffer)
+        }
+        assert written == {(each.name, name) for each in pipeline.resources for name in each.names}
 
+    @given(every_pipeline)
+    def test_a_history_says_where_there_is_none(self, pipeline: Pipeline) -> None:
+        """Each lasting buffer, or the guide that every reprojection asks."""
+        assert any(resource.name == "guide" and resource.tells_unknown for resource in pipeline.lasting)
 
-def test_first_level_writes_the_colour_history() -> None:
-    (first,) = [step for step in pipeline(Inputs(1, 2, False, False, False), Settings()) if step.name == "atrous 1"]
-    assert first.writes == ("history",)
+    @given(every_pipeline)
+    def test_taps_stay_within_the_halo(self, pipeline: Pipeline) -> None:
+        assert pipeline.reach <= HALO
 
-
-@pytest.mark.parametrize(
-    ("buffer", "kind"), [("guide", "guide"), ("previous guide", "guide"), ("level 2", "level"), ("out", "out")]
-)
-def test_kinds_of_buffers(buffer: str, kind: str) -> None:
-    assert kind_of(buffer) == kind
+    @given(every_pipeline)
+    def test_every_pass_computes_something(self, pipeline: Pipeline) -> None:
+        assert all(math.isfinite(entry.operations) and entry.operations > 0 for entry in pipeline.passes)
