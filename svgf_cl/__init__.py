@@ -3,16 +3,16 @@
 from svgf_cl.check import check_frame, check_sequence
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.device.tuning import Tuning
-from svgf_cl.errors import DeviceError, FrameError, SequenceError, SettingsError, SvgfError
+from svgf_cl.errors import DeviceError, FileError, FrameError, SettingsError, SvgfError
 from svgf_cl.frame import Frame
 from svgf_cl.settings import Settings
 
 __all__ = [
     "Denoiser",
     "DeviceError",
+    "FileError",
     "Frame",
     "FrameError",
-    "SequenceError",
     "Settings",
     "SettingsError",
     "SvgfError",

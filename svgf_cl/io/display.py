@@ -9,13 +9,12 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
+from svgf_cl.frame import LUMINANCE
 from svgf_cl.io.atomic import written_whole
 
 Linear = npt.NDArray[np.floating]
 Bytes = npt.NDArray[np.uint8]
 
-# Rec. 709.
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 MIDDLE_GREY = 0.18
 BLOCK = 8  # pixels
 QUALITY = 90  # of a WebP: it hides nothing; PNG ignores it

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from svgf_cl import Denoiser, SequenceError
+from svgf_cl import Denoiser, FileError
 from svgf_cl.io.panels import GAP, LABEL_HEIGHT
 from svgf_cl_tracer.demo import SETTINGS, Demo
 
@@ -55,7 +55,7 @@ def test_the_demo_gains_what_it_promises_once_warm(tmp_path: Path) -> None:
 @pytest.mark.parametrize("frames", [3, 5])
 def test_another_length_does_not_go_into_the_same_folder(run: Demo, frames: int) -> None:
     run.check_leftovers()
-    with pytest.raises(SequenceError, match="left by an earlier run"):
+    with pytest.raises(FileError, match="left by an earlier run"):
         replace(run, frames=frames).check_leftovers()
 
 

@@ -83,5 +83,8 @@ def test_another_tracer_has_another_version(tmp_path: Path, monkeypatch: pytest.
     copy = shutil.copytree(Path(fingerprint.__file__).parent, tmp_path / "tracer")
     monkeypatch.setattr(fingerprint, "__file__", str(copy / "fingerprint.py"))
     assert tracer_version.__wrapped__() == tracer_version()
+    (copy / "demo.py").write_text("something else")
+    (copy / "cli" / "render.py").write_text("something else")
+    assert tracer_version.__wrapped__() == tracer_version()
     (copy / "camera.py").write_text("something else")
     assert tracer_version.__wrapped__() != tracer_version()

@@ -87,7 +87,7 @@ class Demo:
         return self.folder / f"still.{number:04d}.png"
 
     def check_leftovers(self) -> None:
-        """Raise `SequenceError` where the folder holds frames of an earlier run that this one would not replace."""
+        """Raise `FileError` where the folder holds frames of an earlier run that this one would not replace."""
         for kind in ("noisy", "filtered", "denoised"):
             check_leftovers(self.folder / kind, [self.path(kind, number) for number in range(self.frames)])
         check_leftovers(self.folder / "reference", [self.path("reference", number) for number in self.compared])

@@ -14,6 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from svgf_cl.frame import LUMINANCE
+
 from .compiled import compiled
 from .geometry import Triangles, interpolated, texture_coordinates
 from .lights import PointLight, Sun
@@ -21,7 +23,7 @@ from .materials import Material, Materials, emitted_radiance, is_solid
 from .sampling import Random4, on_circle
 from .sky import SkyTable, sample_sky, sky_density, sky_radiance
 from .vec3 import Vec3, add, dot, normalise, row, scale, subtract, to_world
-from .vectors import LUMINANCE, Float64
+from .vectors import Float64
 
 LAMPS, SUNS, POINTS, SKY = range(4)
 
@@ -67,7 +69,7 @@ class Lights(NamedTuple):
         """Gather them at `time` in seconds."""
         suns = [light for light in lights if isinstance(light, Sun) and max(light.irradiance) > 0.0]
         points = [light for light in lights if isinstance(light, PointLight) and max(light.intensity) > 0.0]
-        brightness = np.array([LUMINANCE @ material.emission_at(time) for material in materials])
+        brightness = np.array([np.dot(LUMINANCE, material.emission_at(time)) for material in materials])
         shining = np.flatnonzero(brightness[triangles.material] > 0.0)
         edges = triangles.corners[shining, 1:].astype(np.float64)
         normals = np.cross(edges[:, 0], edges[:, 1])
@@ -88,13 +90,13 @@ class Lights(NamedTuple):
             _rows([s.irradiance for s in suns]) / np.maximum(np.pi * np.sin(radius) ** 2, TINY)[:, None],
             np.cos(radius),
             4.0 * np.pi * np.sin(radius / 2.0) ** 2,
-            _cumulative(np.array([LUMINANCE @ s.irradiance for s in suns])),
+            _cumulative(np.array([np.dot(LUMINANCE, s.irradiance) for s in suns])),
             _rows([position for position, _ in placed]),
             _rows([direction for _, direction in placed]),
             _rows([light.intensity for light in points]),
             np.cos(np.radians([(p.inner_angle, p.outer_angle) for p in points])).reshape(-1, 2),
             np.array([light.reach for light in points], np.float64),
-            _cumulative(np.array([LUMINANCE @ p.intensity for p in points])),
+            _cumulative(np.array([np.dot(LUMINANCE, p.intensity) for p in points])),
         )
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from svgf_cl.errors import SequenceError
+from svgf_cl.errors import FileError
 from svgf_cl.io.exr import read_pixels
 
 from .errors import SceneError
@@ -43,7 +43,7 @@ def load_environment(path: str | PathLike[str], to_world: Float64 | None = None)
                 f"expected three channels and at most {MAX_PIXELS} pixels, got {len(names)} and {width} x {height}"
             )
         return Environment(np.ascontiguousarray(pixels[..., :3]), np.eye(3) if to_world is None else to_world)
-    except SequenceError as error:
+    except FileError as error:
         raise SceneError(str(error)) from error
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from error

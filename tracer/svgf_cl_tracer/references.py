@@ -173,7 +173,7 @@ class References:
 
         Raises
         ------
-        SequenceError
+        FileError
             The file cannot be written.
         """
         first, end = self._rows

@@ -14,10 +14,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from svgf_cl.frame import LUMINANCE
+
 from .compiled import compiled
 from .errors import SceneError
 from .vec3 import Vec3
-from .vectors import LUMINANCE, Float32, Float64
+from .vectors import Float32, Float64
 
 
 @dataclass(frozen=True, eq=False)

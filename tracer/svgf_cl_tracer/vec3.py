@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from svgf_cl.frame import LUMINANCE
+
 from .compiled import compiled
 
 Vec3 = tuple[float, float, float]
@@ -66,7 +68,7 @@ def normalise(a: Vec3) -> Vec3:
 @compiled
 def luminance(colour: Vec3) -> float:
     """Rec. 709 luminance of a linear colour."""
-    return 0.2126 * colour[0] + 0.7152 * colour[1] + 0.0722 * colour[2]
+    return dot(LUMINANCE, colour)
 
 
 @compiled
