@@ -31,7 +31,7 @@ bench: device  ## time every kernel on every device, beside rival and error; rep
 	$(BIN)/python -m benchmarks --output out/bench
 
 docs: demo implementations  ## make docs/accuracy.md, docs/scene_description.md and the pictures of README and of the built-in scenes again
-	$(BIN)/python -m benchmarks.accuracy docs/accuracy.md
+	$(BIN)/python -m benchmarks.accuracy_page docs/accuracy.md
 	$(BIN)/python scripts/picture.py
 	$(BIN)/python scripts/scene_description.py
 	$(BIN)/svgf-cl scenes -o docs/builtin_scenes.webp --size 320x180 --spp 128

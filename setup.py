@@ -1,9 +1,16 @@
-"""The one thing pyproject.toml cannot say cleanly: kernels/ is installed inside the package, as svgf_cl.kernels."""
+"""What pyproject.toml cannot say cleanly: which folders are packages.
+
+kernels/ is installed inside the package, as svgf_cl.kernels; the tracer lies in a folder of its own.
+"""
 
 from setuptools import find_packages, setup
 
 setup(
-    packages=[*find_packages(include=["svgf_cl", "svgf_cl.*", "tracer", "tracer.*"]), "svgf_cl.kernels"],
-    package_dir={"svgf_cl.kernels": "kernels"},
+    packages=[
+        *find_packages(include=["svgf_cl", "svgf_cl.*"]),
+        "svgf_cl.kernels",
+        *find_packages(where="tracer"),
+    ],
+    package_dir={"svgf_cl.kernels": "kernels", "svgf_cl_tracer": "tracer/svgf_cl_tracer"},
     package_data={"svgf_cl.kernels": ["*.cl", "*.clh"], "svgf_cl.bench": ["*.cl", "*.html"]},
 )

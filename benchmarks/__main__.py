@@ -13,17 +13,17 @@ from typing import Annotated
 
 import typer
 
-from benchmarks import oidn, speed_against_error, versus_oidn
+from benchmarks import bars, oidn, speed_against_error, versus_oidn
 from benchmarks.command import run
 from benchmarks.footage import FOOTAGE
+from benchmarks.tracing import picture
+from benchmarks.tracing import suite as tracing
 from svgf_cl import Settings
-from svgf_cl.bench import bars, report, tables
+from svgf_cl.bench import report, tables
 from svgf_cl.bench.cases import USUAL_SHAPE
 from svgf_cl.bench.report import Section
 from svgf_cl.bench.results import Result, Run
 from svgf_cl.bench.suite import Suite
-from svgf_cl.bench.tracing import picture
-from svgf_cl.bench.tracing import suite as tracing
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.compare.metrics import require_flip
 from svgf_cl.errors import SvgfError
@@ -76,7 +76,8 @@ def raced() -> tuple[Sequence[Result], Section]:
 def write(run: Run, folder: Path, more: list[Section]) -> None:
     """Write results and report."""
     run.write(folder / "results.json")
-    report.write(run, folder, more=more)
+    held = bars.bar_table(run.results, run.platforms)
+    report.write(run, folder, first=[Section("Bars", tables=[held])] if held.rows else (), more=more)
 
 
 def main() -> None:

@@ -15,7 +15,7 @@ from svgf_cl.check import CHECKS, Report
 from svgf_cl.cli.console import tracked
 from svgf_cl.frame import extent
 from svgf_cl.io.atomic import written_whole
-from tracer import BUILTIN
+from svgf_cl_tracer import BUILTIN
 
 TARGET = Path("docs/checking_inputs.md")
 SHAPE = (180, 320)

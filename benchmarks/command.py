@@ -7,13 +7,11 @@ from collections.abc import Callable
 
 import typer
 
-from svgf_cl.errors import SvgfError
+from svgf_cl.cli import leave
 
 
 def run(command: Callable[..., None], name: str) -> None:
-    """Run `command` on the process's arguments; an `SvgfError` is told under `name`, and ends in exit code 2."""
-    try:
-        typer.run(command)
-    except SvgfError as error:
-        print(f"{name}: {error}", file=sys.stderr)
-        sys.exit(2)
+    """Run `command` on the process's arguments; what a user can get wrong is told under `name`, in exit code 2."""
+    app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+    app.command()(command)
+    leave(app, sys.argv[1:], name, f"python -m {name}")

@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-import tracer
-from svgf_cl.cli.scenes import open_scene
+import svgf_cl_tracer
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.display import Linear
-from tracer.references import chunks
+from svgf_cl_tracer.cli.scenes import open_scene
+from svgf_cl_tracer.references import chunks
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Footage:
     name: str
     jitter: bool
     scene: str = "cornell"
-    cameras: tuple[tracer.Camera, ...] = ()
+    cameras: tuple[svgf_cl_tracer.Camera, ...] = ()
     sky: tuple[float, float, float] | None = None
     shape: Shape = (720, 1280)
     band: tuple[float, float] = (0.66, 0.78)
@@ -72,19 +72,19 @@ class Footage:
 
     def noisy(self) -> Iterator[Frame]:
         """The frames to denoise."""
-        return tracer.render_sequence(self._shot, jitter=self.jitter)
+        return svgf_cl_tracer.render_sequence(self._shot, jitter=self.jitter)
 
     def halves(self, advance: Callable[[], None]) -> list[tuple[Linear, Linear]]:
         """Two independent halves of the truth of each judged frame, as far as an earlier run has not rendered them."""
         return [(self._half(number, 0, advance), self._half(number, 1, advance)) for number in self.judged]
 
     @cached_property
-    def _shot(self) -> tracer.Shot:
-        path = tracer.CameraPath.through(self.cameras) if self.cameras else None
-        return tracer.Shot(open_scene(self.scene, self.sky), self.shape, self.frames, path)
+    def _shot(self) -> svgf_cl_tracer.Shot:
+        path = svgf_cl_tracer.CameraPath.through(self.cameras) if self.cameras else None
+        return svgf_cl_tracer.Shot(open_scene(self.scene, self.sky), self.shape, self.frames, path)
 
     def _half(self, number: int, half: int, advance: Callable[[], None]) -> Linear:
-        references = tracer.References(self._shot, seed=half, jitter=self.jitter, rows=self.rows)
+        references = svgf_cl_tracer.References(self._shot, seed=half, jitter=self.jitter, rows=self.rows)
         return references.picture(references.render(number, self.spp // 2, advance))
 
 

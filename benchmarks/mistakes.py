@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from svgf_cl.check import Report, alignment, camera, depth, motion, shading, surfaces, values
 from svgf_cl.check.check import Check
-from svgf_cl.cli.scenes import open_scene
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io import synthetic as room
 from svgf_cl.io.display import display
-from tracer import BUILTIN, Camera, CameraPath, Shot, render_frame
-from tracer.camera import vector
-from tracer.sampling import pixel_jitter
+from svgf_cl_tracer import BUILTIN, Camera, CameraPath, Shot, render_frame
+from svgf_cl_tracer.camera import vector
+from svgf_cl_tracer.cli.scenes import open_scene
+from svgf_cl_tracer.sampling import pixel_jitter
 
 ROOM = "room"
 NEAR, FAR = 0.05, 200.0  # planes of a graphics API's camera, in scene units

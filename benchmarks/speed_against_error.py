@@ -32,13 +32,13 @@ from benchmarks.provenance import provenance
 from benchmarks.variants import VARIANTS
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import parse_rgb, parse_size
-from svgf_cl.cli.render import CAMERA_HELP
 from svgf_cl.compare.metrics import require_flip
 from svgf_cl.device import devices
 from svgf_cl.frame import extent
 from svgf_cl.io.atomic import make_folder
-from tracer import Camera
-from tracer.references import CHUNK
+from svgf_cl_tracer import Camera
+from svgf_cl_tracer.cli.render import CAMERA_HELP
+from svgf_cl_tracer.references import CHUNK
 
 
 def speed_against_error(

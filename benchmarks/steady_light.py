@@ -9,25 +9,26 @@ import pyopencl as cl
 from numpy.typing import NDArray
 
 from svgf_cl import Denoiser, Frame, Settings
+from svgf_cl.frame import LUMINANCE
 from svgf_cl.oracle.svgf import Oracle
 
 SHAPE = (36, 64)
 FRAMES = 24
-LUMINANCE = 1e4
+LIGHT = 1e4
 NOISE = (1e-1, 1e-2, 1e-3, 1e-4)
 
 INTRODUCTION = f"""Variance of steady light: the error of `moment_variance`, rms and relative to its mean, after
-{FRAMES} frames of a luminance of {LUMINANCE:g} with normally distributed noise. Before: the paper's `mu2 - mu1^2` in
+{FRAMES} frames of a luminance of {LIGHT:g} with normally distributed noise. Before: the paper's `mu2 - mu1^2` in
 float32. After: mean and variance as `temporal.cl` keeps them, in float32, and in 16-bit floats, which know a deviation
 to 1e-3 of the light.
 """
 
 
 def steady_frames(noise: float, count: int = FRAMES, seed: int = 0) -> Iterator[Frame]:
-    """A wall at rest; `noise` is the standard deviation of its light over `LUMINANCE`."""
+    """A wall at rest; `noise` is the standard deviation of its light over `LIGHT`."""
     rng = np.random.default_rng(seed)
     for _ in range(count):
-        light = LUMINANCE * (1 + noise * rng.standard_normal((*SHAPE, 1)))
+        light = LIGHT * (1 + noise * rng.standard_normal((*SHAPE, 1)))
         yield Frame(
             color=np.repeat(light, 3, axis=-1).astype(np.float32),
             normal=np.broadcast_to(np.array((0, 0, 1), np.float32), (*SHAPE, 3)),

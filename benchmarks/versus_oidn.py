@@ -27,6 +27,7 @@ from typing import Annotated, Any
 import pyopencl as cl
 import typer
 
+from benchmarks.bars import bar_table
 from benchmarks.command import run
 from benchmarks.footage import FOOTAGE, Footage
 from benchmarks.measurements import Quality, quality
@@ -36,7 +37,6 @@ from benchmarks.provenance import provenance
 from benchmarks.race import Times, race, results
 from benchmarks.versus_tables import error_table, ratio_table, time_table
 from svgf_cl import Denoiser, Settings
-from svgf_cl.bench.bars import bar_table
 from svgf_cl.bench.report import Section
 from svgf_cl.bench.results import Result
 from svgf_cl.bench.tables import Table

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from svgf_cl.io.atomic import written_whole
-from tracer.description import SceneDescription
+from svgf_cl_tracer.description import SceneDescription
 
 TARGET = Path("docs/scene_description.md")
 

@@ -23,8 +23,8 @@ class DeviceError(SvgfError):
     """No OpenCL device works, or the one in use cannot build a kernel, has no room, or broke off."""
 
 
-class SequenceError(SvgfError):
-    """A file of a sequence is missing, unreadable or does not fit the others."""
+class FileError(SvgfError):
+    """A file is missing, unreadable, cannot be written, or does not fit the others."""
 
 
 def one_line(message: object) -> str:

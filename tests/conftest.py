@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pyopencl as cl
 import pytest
 
-import tracer  # noqa: F401  # now: what it has compiled lies in the user's own cache folder, not in those below
+import svgf_cl_tracer  # noqa: F401  # now: what it has compiled lies in the user's own cache folder, not in those below
 from svgf_cl.device import devices, tuning
 from svgf_cl.io import cache
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from svgf_cl.device import devices
 from svgf_cl.frame import CHANNELS, Frame, Shape
-from tracer import Shot, builtin_scene, render_sequence
+from svgf_cl_tracer import Shot, builtin_scene, render_sequence
 
 # Primes: no multiple of any vector width. Fewer on a simulator, which takes a millisecond for every pixel.
 SHAPE = (13, 29) if os.environ.get(devices.VARIABLE) == devices.SIMULATOR else (53, 37)

@@ -16,7 +16,6 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from svgf_cl.bench import plots, scaling
-from svgf_cl.bench.bars import bar_table
 from svgf_cl.bench.compare import comparison, differences
 from svgf_cl.bench.results import Run
 from svgf_cl.bench.tables import Table, device_table, memory_table, stage_table
@@ -55,7 +54,9 @@ class Section:
     notes: Sequence[str] = ()
 
 
-def write(run: Run, folder: Path, *, old: Run | None = None, more: Sequence[Section] = ()) -> None:
+def write(
+    run: Run, folder: Path, *, old: Run | None = None, first: Sequence[Section] = (), more: Sequence[Section] = ()
+) -> None:
     """Write ``report.html`` and ``summary.png``.
 
     Parameters
@@ -64,10 +65,10 @@ def write(run: Run, folder: Path, *, old: Run | None = None, more: Sequence[Sect
     folder : Path
     old : Run, optional
         An earlier run to compare with.
-    more : sequence of Section
-        What else to show, after the run's own sections.
+    first, more : sequence of Section
+        What else to show, before and after the run's own sections.
     """
-    page = render(run, [*sections(run, old), *more])
+    page = render(run, [*first, *sections(run, old), *more])
     with written_whole(folder / "report.html") as aside:
         aside.write_text(page, encoding="utf-8")
     with written_whole(folder / "summary.png") as aside:
@@ -85,9 +86,7 @@ def render(run: Run, parts: Sequence[Section]) -> str:
 
 
 def sections(run: Run, old: Run | None) -> Iterator[Section]:
-    """The page from top to bottom."""
-    if (bars := bar_table(run.results, run.platforms)).rows:
-        yield Section("Bars", tables=[bars])
+    """The run's own sections, from top to bottom."""
     yield Section("Devices", tables=[device_table(run), memory_table(run)])
     for title, draw in plots.plots(run).items():
         yield Section(title, inline_svg(draw, title))

@@ -63,9 +63,7 @@ class Suite:
         chosen = interleaved([[(station, case) for case in station.chosen] for station in stations])
         starts = [row for row in STARTS if self.pattern.search(Case(USUAL_SHAPE, self.settings).name(row))]
         if not chosen and not starts:
-            raise SvgfError(
-                f"--filter: expected part of a name such as svgf.frame.1280x720, got {self.pattern.pattern}"
-            )
+            raise SvgfError(f"--only: expected part of a name such as svgf.frame.1280x720, got {self.pattern.pattern}")
         with progress_bar("setting up", len(chosen) + len(stations)) as advance:
             for station, case in chosen:
                 station.set_up(case)

@@ -4,38 +4,73 @@ from __future__ import annotations
 
 import io
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from importlib.metadata import EntryPoint, entry_points
 from typing import Annotated, Any, NoReturn
 
 import typer
 
 from svgf_cl import __version__
-from svgf_cl.cli import bench, check, compare, demo, denoise, devices, gallery, render, tune
-from svgf_cl.errors import SvgfError
+from svgf_cl.cli import bench, check, compare, denoise, devices, tune
+from svgf_cl.errors import SvgfError, one_line
 
-# Plain help and errors: they read the same in a terminal, in a log and through grep.
-app = typer.Typer(
-    invoke_without_command=True,
-    epilog="Exit codes: 0 fine; 1 a comparison or check failed, or a run broke off; 2 wrong input.",
-    add_completion=False,
-    rich_markup_mode=None,
-    pretty_exceptions_enable=False,
-)
-for command in (
-    devices.devices,
-    demo.demo,
-    gallery.scenes,
-    render.render,
-    check.check,
-    denoise.denoise,
-    compare.compare,
-    tune.tune,
-):
-    app.command()(command)
-app.add_typer(bench.app, name="bench")
+Command = Callable[..., None]
+
+COMMANDS: dict[str, Command] = {
+    "devices": devices.devices,
+    "check": check.check,
+    "denoise": denoise.denoise,
+    "compare": compare.compare,
+    "bench": bench.bench,
+    "tune": tune.tune,
+}
+# Installed packages may declare more: a function each, under the command's name.
+GROUP = "svgf_cl.commands"
+# As the help lists them; any others come behind.
+ORDER = ("devices", "demo", "scenes", "render", "check", "denoise", "compare", "bench", "tune")
 
 
-@app.callback()
+def commands() -> dict[str, Command]:
+    """Every command by its name: svgf_cl's own, and those of other packages that are installed."""
+    found = {entry.name: loaded(entry) for entry in entry_points(group=GROUP)} | COMMANDS
+    return {name: found[name] for name in sorted(found, key=lambda name: ((*ORDER, name).index(name), name))}
+
+
+def loaded(entry: EntryPoint) -> Command:
+    """The function of an entry point; where it cannot be imported, one that says so when it is called."""
+    try:
+        command: Command = entry.load()
+    except Exception as error:  # it runs what others wrote
+        return broken(f"{entry.name}: {entry.value} cannot be imported ({one_line(error)})")
+    return command
+
+
+def broken(complaint: str) -> Command:
+    """A command that takes whatever comes and raises `SvgfError`."""
+
+    def command(context: typer.Context) -> None:
+        raise SvgfError(complaint)
+
+    command.__doc__ = complaint
+    return command
+
+
+def application() -> typer.Typer:
+    """The command line with all that is installed."""
+    # Plain help and errors: they read the same in a terminal, in a log and through grep.
+    app = typer.Typer(
+        invoke_without_command=True,
+        epilog="Exit codes: 0 fine; 1 a comparison or check failed, or a run broke off; 2 wrong input.",
+        add_completion=False,
+        rich_markup_mode=None,
+        pretty_exceptions_enable=False,
+        callback=common,
+    )
+    for name, command in commands().items():
+        app.command(name)(command)
+    return app
+
+
 def common(
     version: Annotated[bool, typer.Option("--version", help="Show the version and exit.", is_eager=True)] = False,
 ) -> None:
@@ -51,17 +86,22 @@ UsageError: type[Any] = typer.BadParameter.__mro__[1]
 
 def main(argv: Sequence[str] | None = None) -> NoReturn:
     """Run the command line on `argv` (by default the process's own arguments) and leave with its exit code."""
+    arguments = list(sys.argv[1:] if argv is None else argv) or ["--help"]
+    leave(application(), arguments, "svgf-cl", "svgf-cl")
+
+
+def leave(app: typer.Typer, arguments: Sequence[str], name: str, usage: str) -> NoReturn:
+    """Run `app` and leave with its exit code; errors are one line, told under `name`. `usage` is how it is called."""
     for stream in (sys.stdout, sys.stderr):
         # A file may be called what is no text at all: it is shown as Python would write it.
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
-    arguments = list(sys.argv[1:] if argv is None else argv) or ["--help"]
     try:
-        sys.exit(app(arguments, prog_name="svgf-cl", standalone_mode=False))
+        sys.exit(app(list(arguments), prog_name=usage, standalone_mode=False))
     except SvgfError as error:
         complaint = str(error)
     except UsageError as error:
-        command = error.ctx.command_path if error.ctx else "svgf-cl"
+        command = error.ctx.command_path if error.ctx else usage
         complaint = " ".join(f"{error.format_message().rstrip('.')}; try '{command} --help'".split())
     except MemoryError as error:
         complaint = f"not enough memory: {error}"
@@ -69,7 +109,7 @@ def main(argv: Sequence[str] | None = None) -> NoReturn:
         complaint = f"{error.filename or 'output'}: {error.strerror or error}"
     except (KeyboardInterrupt, typer.Abort):  # which of them, or neither, depends on typer's version
         sys.exit(130)
-    print(f"svgf-cl: {printable(complaint)}", file=sys.stderr)
+    print(f"{name}: {printable(complaint)}", file=sys.stderr)
     sys.exit(2)
 
 

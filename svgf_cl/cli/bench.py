@@ -8,24 +8,15 @@ from typing import Annotated
 
 import typer
 
-from svgf_cl.cli import bench_tracer
 from svgf_cl.cli.console import progress_bar, show
-from svgf_cl.cli.options import Earlier, SettingTexts, parse_settings, parse_size
+from svgf_cl.cli.options import Earlier, FilterName, SettingTexts, parse_settings, parse_size
 from svgf_cl.errors import SvgfError
 from svgf_cl.filters import Settings
 from svgf_cl.io.atomic import make_folder
 
-# Plain help, as in `svgf_cl.cli`.
-app = typer.Typer(rich_markup_mode=None, add_completion=False)
-app.command()(bench_tracer.tracer)
 
-
-@app.callback(invoke_without_command=True)
 def bench(
-    context: typer.Context,
-    filter_: Annotated[
-        str, typer.Option("--filter", metavar="REGEX", help="Only benchmarks whose name it is found in.")
-    ] = "",
+    only: Annotated[str, typer.Option(metavar="REGEX", help="Only benchmarks whose name it is found in.")] = "",
     size: Annotated[
         list[str], typer.Option(metavar="WxH", help="Size to time; may be repeated. By default 320x180 to 3840x2160.")
     ] = [],  # noqa: B006  # never changed; typer wants the default spelled here
@@ -37,6 +28,7 @@ def bench(
             "-o", "--output", metavar="DIR", help="Also write results.json, report.html and summary.png there."
         ),
     ] = None,
+    filter_: FilterName = Settings.name,
     set_: SettingTexts = [],  # noqa: B006
 ) -> None:
     """Time every kernel and the whole frame, against the device's own ceilings, beside the error.
@@ -47,28 +39,23 @@ def bench(
 
     \b
     Examples:
-      svgf-cl bench --filter 'frame|enqueue' --size 1280x720
+      svgf-cl bench --only 'frame|enqueue' --size 1280x720
       svgf-cl bench --output out/bench
-      svgf-cl bench --filter atrous --compare out/bench/results.json
+      svgf-cl bench --only atrous --compare out/bench/results.json
     """
-    if context.invoked_subcommand:
-        refuse_options(context)
-        return
     try:
-        from svgf_cl.bench import bars, compare, report, tables
+        from svgf_cl.bench import compare, report, tables
         from svgf_cl.bench.cases import SHAPES
         from svgf_cl.bench.results import Run
         from svgf_cl.bench.suite import Suite
     except ModuleNotFoundError as error:
         raise SvgfError(f"bench needs more ({error}): pip install '.[bench]' in a clone of svgf_cl") from error
     shapes = [parse_size(text) for text in size] or SHAPES
-    suite = Suite(parse_filter(filter_), shapes, parse_settings(Settings.name, set_), seconds)
+    suite = Suite(parse_pattern(only), shapes, parse_settings(filter_, set_), seconds)
     earlier = Run.read(old) if old else None
     folder = make_folder(output) if output else None
     run = suite.run(progress_bar)
     shown = [tables.device_table(run), *(tables.stage_table(run, device) for device in run.devices)]
-    if (held := bars.bar_table(run.results, run.platforms)).rows:
-        shown.append(held)
     if earlier:
         shown.append(compare.comparison(earlier, run))
     for table in shown:
@@ -83,18 +70,9 @@ def bench(
         print(f"{folder}: results.json, report.html, summary.png")
 
 
-def refuse_options(context: typer.Context) -> None:
-    """Refuse options before the name of a part: they are for the benchmark of the filter, which does not run then."""
-    for name in context.params:
-        source = context.get_parameter_source(name)
-        if source and source.name == "COMMANDLINE":
-            part = context.invoked_subcommand
-            raise typer.BadParameter(f"expected options of '{part}' behind its name, got one before it", ctx=context)
-
-
-def parse_filter(text: str) -> re.Pattern[str]:
+def parse_pattern(text: str) -> re.Pattern[str]:
     """Read a regular expression; `SvgfError` where it is none."""
     try:
         return re.compile(text)
     except re.error as error:
-        raise SvgfError(f"--filter: expected a regular expression, got {text!r} ({error})") from error
+        raise SvgfError(f"--only: expected a regular expression, got {text!r} ({error})") from error

@@ -14,7 +14,7 @@ import typer
 from svgf_cl.cli.console import kept_of, show_times, tracked
 from svgf_cl.cli.options import Exposure, FilterName, Output, SettingTexts, parse_settings
 from svgf_cl.denoiser import Denoiser
-from svgf_cl.errors import SequenceError
+from svgf_cl.errors import FileError
 from svgf_cl.filters import Settings
 from svgf_cl.filters.filter import Filter
 from svgf_cl.io.atomic import make_folder
@@ -66,14 +66,14 @@ def denoise(
 
 
 def target_paths(sources: Sequence[Path], folder: Path) -> list[Path]:
-    """Name the picture of each source; `SequenceError` where two would be one file, or one would replace a source."""
+    """Name the picture of each source; `FileError` where two would be one file, or one would replace a source."""
     targets = [folder / source.with_suffix(".exr").name for source in sources]
     read = {os.path.realpath(source) for source in sources}
     for target, source in zip(targets, sources, strict=True):
         if os.path.realpath(target) in read:
-            raise SequenceError(f"{target}: expected an output folder other than the input's, got {source.parent}")
+            raise FileError(f"{target}: expected an output folder other than the input's, got {source.parent}")
     if len(set(targets)) < len(targets):
-        raise SequenceError(f"{folder}: expected frames of different names, got two that are both called the same")
+        raise FileError(f"{folder}: expected frames of different names, got two that are both called the same")
     return targets
 
 

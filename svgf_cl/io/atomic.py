@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from svgf_cl.errors import SequenceError
+from svgf_cl.errors import FileError
 
 
 @contextmanager
@@ -24,7 +24,7 @@ def written_whole(path: Path) -> Iterator[Path]:
 
     Raises
     ------
-    SequenceError
+    FileError
         Where the file cannot be written; it names `path` and the system's reason.
     """
     aside = path.with_name(f".{path.name}.{socket.gethostname()}-{os.getpid()}.tmp")
@@ -34,7 +34,7 @@ def written_whole(path: Path) -> Iterator[Path]:
         _sync(aside)
         os.replace(aside, path)
     except OSError as error:
-        raise SequenceError(f"{path}: cannot be written ({error.strerror or error})") from error
+        raise FileError(f"{path}: cannot be written ({error.strerror or error})") from error
     finally:
         with contextlib.suppress(OSError):  # there never was one, or it is `path` now
             aside.unlink()
@@ -45,40 +45,40 @@ def make_folder(path: Path) -> Path:
 
     Raises
     ------
-    SequenceError
+    FileError
         Where that is impossible, or the folder is read-only.
     """
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise SequenceError(f"{path}: cannot be made a folder for the output ({error.strerror})") from error
+        raise FileError(f"{path}: cannot be made a folder for the output ({error.strerror})") from error
     if not os.access(path, os.W_OK | os.X_OK):
-        raise SequenceError(f"{path}: expected a folder that can be written to, got one that is read-only")
+        raise FileError(f"{path}: expected a folder that can be written to, got one that is read-only")
     _delete_leftovers(path)
     return path
 
 
 def require(path: Path) -> None:
-    """Raise `SequenceError` unless there is something at `path` that this user may look at."""
+    """Raise `FileError` unless there is something at `path` that this user may look at."""
     try:
         path.stat()
     except FileNotFoundError as error:
-        raise SequenceError(f"{path}: expected a file or a folder, found nothing there") from error
+        raise FileError(f"{path}: expected a file or a folder, found nothing there") from error
     except OSError as error:
         raise unreadable(path, error) from error
 
 
 def entries(folder: Path) -> list[Path]:
-    """What is in `folder`; `SequenceError` where it cannot be read."""
+    """What is in `folder`; `FileError` where it cannot be read."""
     try:
         return list(folder.iterdir())
     except OSError as error:
         raise unreadable(folder, error) from error
 
 
-def unreadable(path: Path, error: OSError) -> SequenceError:
+def unreadable(path: Path, error: OSError) -> FileError:
     """Make the error for a file or folder that is there but cannot be read."""
-    return SequenceError(f"{path}: cannot be read ({error.strerror or error})")
+    return FileError(f"{path}: cannot be read ({error.strerror or error})")
 
 
 def read_json(path: Path) -> Any:

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import OpenImageIO as oiio  # noqa: N813  # its documentation calls it so
 
-from svgf_cl.errors import SequenceError, one_line
+from svgf_cl.errors import FileError, one_line
 from svgf_cl.io.atomic import require, written_whole
 
 Plane = npt.NDArray[np.float32]
@@ -30,7 +30,7 @@ def write_channels(path: Path, planes: Mapping[str, Plane], attributes: Mapping[
 
     Raises
     ------
-    SequenceError
+    FileError
         The file cannot be written; whatever was at `path` before is still there.
     """
     pixels = np.ascontiguousarray(np.stack(list(planes.values()), axis=-1))
@@ -43,9 +43,9 @@ def write_channels(path: Path, planes: Mapping[str, Plane], attributes: Mapping[
     with written_whole(path) as aside:
         image = oiio.ImageBuf(spec)
         if not (image.set_pixels(spec.roi, pixels) and image.write(_name(aside), fileformat="openexr")):
-            raise SequenceError(f"{path}: cannot be written ({one_line(image.geterror())}); is there room on the disk?")
+            raise FileError(f"{path}: cannot be written ({one_line(image.geterror())}); is there room on the disk?")
         if not _has_last_row(aside):
-            raise SequenceError(f"{path}: cannot be written (its end is missing); is there room on the disk?")
+            raise FileError(f"{path}: cannot be written (its end is missing); is there room on the disk?")
 
 
 def read_channels(path: Path) -> dict[str, Plane]:
@@ -53,7 +53,7 @@ def read_channels(path: Path) -> dict[str, Plane]:
 
     Raises
     ------
-    SequenceError
+    FileError
         The file is missing, of another format or damaged, or claims more pixels than it can hold.
     """
     names, pixels = read_pixels(path, ("openexr",))
@@ -77,14 +77,14 @@ def read_pixels(path: Path, formats: Collection[str]) -> tuple[tuple[str, ...], 
 
     Raises
     ------
-    SequenceError
+    FileError
         As of `read_channels`.
     """
     with _opened(path, formats) as source:
         spec = source.spec()
         pixels = source.read_image(0, 0, 0, spec.nchannels, "float")
         if pixels is None:
-            raise SequenceError(f"{path}: expected a whole image, got a damaged one ({one_line(source.geterror())})")
+            raise FileError(f"{path}: expected a whole image, got a damaged one ({one_line(source.geterror())})")
         for index in range(spec.nchannels):
             # As floats, integers have come as fractions of the largest one.
             if spec.channelformat(index).basetype == oiio.UINT32:
@@ -94,23 +94,23 @@ def read_pixels(path: Path, formats: Collection[str]) -> tuple[tuple[str, ...], 
 
 @contextmanager
 def _opened(path: Path, formats: Collection[str]) -> Iterator[Any]:
-    """Open the image at `path`, whose header claims no more than it can hold; all that is wrong is a SequenceError."""
+    """Open the image at `path`, whose header claims no more than it can hold; all that is wrong is a FileError."""
     require(path)
     if not path.is_file():  # but a folder; or a pipe, which might keep us waiting for ever
-        raise SequenceError(f"{path}: expected {_described(formats)}, found something that is no file")
+        raise FileError(f"{path}: expected {_described(formats)}, found something that is no file")
     try:
         source = oiio.ImageInput.open(_name(path))
         if source is None or source.format_name() not in formats:
             got = f"the format {source.format_name()}" if source else one_line(oiio.geterror())
-            raise SequenceError(f"{path}: expected {_described(formats)}, got {got}")
+            raise FileError(f"{path}: expected {_described(formats)}, got {got}")
         claimed, held = source.spec().image_bytes(), path.stat().st_size
         if claimed > max(TRUSTED, MAX_RATIO * held):
-            raise SequenceError(f"{path}: expected a whole image, got {claimed} bytes of pixels in a file of {held}")
+            raise FileError(f"{path}: expected a whole image, got {claimed} bytes of pixels in a file of {held}")
         yield source
     except UnicodeError as error:
-        raise SequenceError(f"{path}: expected text in UTF-8 in its header, got another ({error})") from error
+        raise FileError(f"{path}: expected text in UTF-8 in its header, got another ({error})") from error
     except MemoryError as error:
-        raise SequenceError(f"{path}: expected an image that fits into memory, got a larger one") from error
+        raise FileError(f"{path}: expected an image that fits into memory, got a larger one") from error
 
 
 def _has_last_row(path: Path) -> bool:
@@ -130,4 +130,4 @@ def _name(path: Path) -> str:
     try:
         return path.as_posix().encode().decode()
     except UnicodeEncodeError as error:
-        raise SequenceError(f"{str(path)!a}: expected a name in UTF-8; rename it or its folder") from error
+        raise FileError(f"{str(path)!a}: expected a name in UTF-8; rename it or its folder") from error

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from svgf_cl.errors import FrameError, SequenceError
+from svgf_cl.errors import FileError, FrameError
 from svgf_cl.frame import REQUIRED, Frame, extent
 from svgf_cl.io.atomic import entries, require
 from svgf_cl.io.exr import Plane, read_attribute, read_channels, write_channels
@@ -60,7 +60,7 @@ def find_frames(paths: Iterable[Path]) -> list[Path]:
 
     Raises
     ------
-    SequenceError
+    FileError
         Where a path is missing, or a folder holds no frame or lacks one between two others.
     """
     found: list[Path] = []
@@ -68,7 +68,7 @@ def find_frames(paths: Iterable[Path]) -> list[Path]:
         require(path)
         files = find_numbered(path, "frame") if path.is_dir() else [path]
         if not files:
-            raise SequenceError(f"{path}: expected files named frame.0000.exr in this folder, found none")
+            raise FileError(f"{path}: expected files named frame.0000.exr in this folder, found none")
         if path.is_dir():
             check_gaps(files)
         found += files
@@ -76,19 +76,19 @@ def find_frames(paths: Iterable[Path]) -> list[Path]:
 
 
 def check_gaps(files: Sequence[Path]) -> None:
-    """Raise `SequenceError` where a number is missing: the next frame's motion would lead to the wrong one."""
+    """Raise `FileError` where a number is missing: the next frame's motion would lead to the wrong one."""
     for before, after in pairwise(files):
         missing = (frame_number(before) or 0) + 1
         if missing < (frame_number(after) or 0):
             gap = frame_path(before.parent, missing)
-            raise SequenceError(f"{gap}: expected this frame between {before.name} and {after.name}, found none")
+            raise FileError(f"{gap}: expected this frame between {before.name} and {after.name}, found none")
 
 
 def check_leftovers(folder: Path, written: Collection[Path]) -> None:
-    """Raise `SequenceError` where pictures of an earlier run would stay in `folder` and pass for a part of this one."""
+    """Raise `FileError` where pictures of an earlier run would stay in `folder` and pass for a part of this one."""
     for path in sorted(entries(folder) if folder.is_dir() else []):
         if NUMBERED.fullmatch(path.name) and path not in written:
-            raise SequenceError(f"{path}: left by an earlier run of other length; delete it, or choose another folder")
+            raise FileError(f"{path}: left by an earlier run of other length; delete it, or choose another folder")
 
 
 def write_frame(path: Path, frame: Frame, made_from: str = "") -> None:
@@ -105,7 +105,7 @@ def write_frame(path: Path, frame: Frame, made_from: str = "") -> None:
     ------
     FrameError
         Where the frame is not consistent in itself.
-    SequenceError
+    FileError
         Where an id is greater than 2**24, or the file cannot be written.
     """
     write_channels(path, channels_of(path, frame), {MADE_FROM: made_from} if made_from else {})
@@ -115,7 +115,7 @@ def kept_frame(path: Path, made_from: str) -> Frame | None:
     """Read the frame that an earlier run made from the same and wrote whole; None where there is no such file."""
     try:
         return read_frame(path) if read_attribute(path, MADE_FROM) == made_from else None
-    except SequenceError:
+    except FileError:
         return None
 
 
@@ -123,7 +123,7 @@ def is_picture(path: Path, picture: Plane) -> bool:
     """Whether the file at `path` holds this (H, W, 3) picture, bit by bit."""
     try:
         return read_picture(path).tobytes() == picture.tobytes()
-    except SequenceError:
+    except FileError:
         return False
 
 
@@ -133,7 +133,7 @@ def channels_of(path: Path, frame: Frame) -> dict[str, Plane]:
     planes: dict[str, Plane] = {}
     for field, value in frame.present().items():
         if field == "id" and value.max(initial=0) > MAX_ID:
-            raise SequenceError(f"{path}: expected ids up to {MAX_ID} (whole numbers in float32), got {value.max()}")
+            raise FileError(f"{path}: expected ids up to {MAX_ID} (whole numbers in float32), got {value.max()}")
         components = np.asarray(value, np.float32).reshape(*frame.shape, -1)
         planes |= zip(CHANNEL_NAMES[field], np.moveaxis(components, -1, 0), strict=False)
     return planes
@@ -144,7 +144,7 @@ def read_frame(path: Path) -> Frame:
 
     Raises
     ------
-    SequenceError
+    FileError
         Where the file is missing or not an EXR file, or where a field is absent, incomplete or of a wrong value.
     """
     planes = read_channels(path)
@@ -156,7 +156,7 @@ def read_frame(path: Path) -> Frame:
     try:
         frame.check_presence()
     except FrameError as error:
-        raise SequenceError(f"{path}: {error}; channels found: {' '.join(planes)}") from error
+        raise FileError(f"{path}: {error}; channels found: {' '.join(planes)}") from error
     return frame
 
 
@@ -165,7 +165,7 @@ def read_sequence(paths: Sequence[Path]) -> Iterator[Frame]:
 
     Raises
     ------
-    SequenceError
+    FileError
         As `read_frame`, and where a frame differs in size or fields from the first or a field has no usable value.
     """
     size, fields = None, None
@@ -173,11 +173,11 @@ def read_sequence(paths: Sequence[Path]) -> Iterator[Frame]:
         frame = read_frame(path)
         size, fields = size or frame.shape, fields or fields_of(frame)
         if frame.shape != size:
-            raise SequenceError(f"{path}: expected {extent(size)} pixels as in {paths[0]}, got {extent(frame.shape)}")
+            raise FileError(f"{path}: expected {extent(size)} pixels as in {paths[0]}, got {extent(frame.shape)}")
         changes = [f"without {name}" for name in sorted(fields - fields_of(frame))]
         changes += [f"with {name}" for name in sorted(fields_of(frame) - fields)]
         if changes:
-            raise SequenceError(f"{path}: expected the fields of {paths[0]}, got a frame {', '.join(changes)}")
+            raise FileError(f"{path}: expected the fields of {paths[0]}, got a frame {', '.join(changes)}")
         check_usable(path, frame)
         yield frame
 
@@ -188,11 +188,11 @@ def fields_of(frame: Frame) -> set[str]:
 
 
 def check_usable(path: Path, frame: Frame) -> None:
-    """Raise `SequenceError` where a whole field is NaN or infinite (depth may be infinite: an empty sky)."""
+    """Raise `FileError` where a whole field is NaN or infinite (depth may be infinite: an empty sky)."""
     for field, value in frame.present().items():
         usable = ~np.isnan(value) if field == "depth" else np.isfinite(value)
         if not usable.any():
-            raise SequenceError(f"{path}: expected finite values in {field}, got none in the whole frame")
+            raise FileError(f"{path}: expected finite values in {field}, got none in the whole frame")
 
 
 def write_picture(path: Path, picture: npt.ArrayLike) -> None:
@@ -202,7 +202,7 @@ def write_picture(path: Path, picture: npt.ArrayLike) -> None:
 
 
 def read_picture(path: Path) -> Plane:
-    """Read the ``R G B`` of an EXR file, whatever else it holds, as (H, W, 3) float32; `SequenceError` without them."""
+    """Read the ``R G B`` of an EXR file, whatever else it holds, as (H, W, 3) float32; `FileError` without them."""
     planes = read_channels(path)
     color = field_of(path, planes, "color")
     if color is None:
@@ -223,13 +223,13 @@ def field_of(path: Path, planes: Mapping[str, Plane], field: str) -> Plane | Non
 
 
 def whole_numbers(path: Path, plane: Plane) -> npt.NDArray[np.uint32]:
-    """Return ids as integers; `SequenceError` unless they are whole numbers that float32 holds exactly."""
+    """Return ids as integers; `FileError` unless they are whole numbers that float32 holds exactly."""
     fits = (plane >= 0) & (plane <= MAX_ID) & (plane == np.floor(plane))
     if not fits.all():
-        raise SequenceError(f"{path}: expected whole numbers in 0..{MAX_ID} in channel id, got {plane[~fits][0]}")
+        raise FileError(f"{path}: expected whole numbers in 0..{MAX_ID} in channel id, got {plane[~fits][0]}")
     return plane.astype(np.uint32)
 
 
-def absent(path: Path, names: Sequence[str], planes: Mapping[str, Plane]) -> SequenceError:
+def absent(path: Path, names: Sequence[str], planes: Mapping[str, Plane]) -> FileError:
     """Make the error for channels that are not there; it lists those that are."""
-    return SequenceError(f"{path}: expected channels {' '.join(names)}, found {' '.join(planes)}")
+    return FileError(f"{path}: expected channels {' '.join(names)}, found {' '.join(planes)}")

@@ -10,7 +10,7 @@ import pytest
 
 from benchmarks.footage import FOOTAGE, Footage
 from svgf_cl.io import cache
-from tracer import Camera
+from svgf_cl_tracer import Camera
 
 SMALL = Footage("small", jitter=True, shape=(30, 40), band=(0.5, 0.7), frames=3, spp=64)
 

@@ -14,15 +14,15 @@ import typer
 from benchmarks import __main__ as everything
 from benchmarks import oidn, speed_against_error, versus_oidn
 from benchmarks.measurements import Quality
+from benchmarks.tracing import suite as tracing
 from benchmarks.versus_oidn import Comparison
 from svgf_cl import SvgfError
 from svgf_cl.bench.results import Result, Run
 from svgf_cl.bench.rig import HOST
 from svgf_cl.bench.suite import Suite
-from svgf_cl.bench.tracing import suite as tracing
 from tests.benchmarks.test_findings import FINDINGS
+from tests.benchmarks.tracing.made_up import tracer_results
 from tests.svgf_cl.bench.runs import whole_run
-from tests.svgf_cl.bench.tracing.made_up import tracer_results
 
 APP = typer.Typer()
 APP.command()(everything.everything)

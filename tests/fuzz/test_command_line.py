@@ -10,11 +10,11 @@ import typer
 from hypothesis import given
 from hypothesis import strategies as st
 
-from svgf_cl.cli import app, main
+from svgf_cl.cli import application, main
 from svgf_cl.cli.options import MAX_FRAMES
 from tests.fuzz.effort import effort
 
-COMMANDS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+COMMANDS = typer.main.get_command(application()).commands  # type: ignore[attr-defined]
 # Every option of every command that takes a value.
 OPTIONS = [
     (name, parameter.opts[0])

@@ -10,9 +10,9 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from svgf_cl import Frame
+from svgf_cl_tracer import Camera, CameraPath, Shot, builtin_scene, render_sequence
 from tests.frames import only
 from tests.hard.variants import Variant
-from tracer import Camera, CameraPath, Shot, builtin_scene, render_sequence
 
 SHAPE = (54, 96)
 MIDDLE = (0.0, 0.95, -0.6)  # of the box

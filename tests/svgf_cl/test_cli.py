@@ -24,7 +24,7 @@ from svgf_cl.io.frames import (
     write_frame,
     write_picture,
 )
-from tests.svgf_cl.bench.tracing import made_up
+from tests.benchmarks.tracing import made_up
 
 COMMANDS = ("devices", "demo", "scenes", "render", "check", "denoise", "compare", "bench", "tune")
 # Radiance of the sky in either set of a scene's lights.
@@ -381,7 +381,7 @@ def test_compare_wants_like_with_like(frames: Path, refused) -> None:
 
 
 def test_rendering_without_the_tracer_says_how_to_get_it(tmp_path: Path, refused, monkeypatch) -> None:
-    monkeypatch.setitem(sys.modules, "tracer", None)
+    monkeypatch.setitem(sys.modules, "svgf_cl_tracer.api", None)
     refused("pip install '.[tracer]'", "render", "cornell", "-o", tmp_path)
     refused("pip install '.[tracer]'", "demo", "-o", tmp_path)
 
@@ -410,7 +410,7 @@ def quick_ceilings(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("quick_ceilings")
 def test_bench_writes_a_report_and_compares(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    argv = ("bench", "--filter", "frame.16x9", "--size", "16x9", "--seconds", "0", "-o", tmp_path)
+    argv = ("bench", "--only", "frame.16x9", "--size", "16x9", "--seconds", "0", "-o", tmp_path)
     assert run(*argv) == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["report.html", "results.json", "summary.png"]
     shown = capsys.readouterr().out
@@ -422,9 +422,9 @@ def test_bench_writes_a_report_and_compares(tmp_path: Path, capsys: pytest.Captu
 
 
 def test_what_bench_cannot_make_sense_of(tmp_path: Path, refused) -> None:
-    refused("--filter: expected a regular expression, got '('", "bench", "--filter", "(")
+    refused("--only: expected a regular expression, got '('", "bench", "--only", "(")
     refused("cannot be read", "bench", "--compare", tmp_path / "none.json")
-    refused("--filter: expected part of a name", "bench", "--filter", "nothing.of.the.kind")
+    refused("--only: expected part of a name", "bench", "--only", "nothing.of.the.kind")
 
 
 def test_bench_without_its_extra_says_what_to_install(monkeypatch: pytest.MonkeyPatch, refused) -> None:
@@ -445,7 +445,7 @@ def test_bench_tracer_writes_and_compares(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     measured = made_up.tracer_results()
-    monkeypatch.setattr("svgf_cl.bench.tracing.suite.measure", lambda *_: measured)
+    monkeypatch.setattr("benchmarks.tracing.suite.measure", lambda *_: measured)
     assert run("bench", "tracer", "cornell", "-o", tmp_path) == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["results.json", "split.png"]
     shown = capsys.readouterr().out
@@ -466,8 +466,8 @@ def test_what_bench_tracer_cannot_make_sense_of(tmp_path: Path, refused) -> None
 def test_bench_tracer_without_an_extra_says_what_to_install(monkeypatch: pytest.MonkeyPatch, refused) -> None:
     monkeypatch.setitem(sys.modules, "psutil", None)
     for module in ("suite", "fresh"):
-        monkeypatch.delitem(sys.modules, f"svgf_cl.bench.tracing.{module}", raising=False)
-        monkeypatch.delattr(f"svgf_cl.bench.tracing.{module}", raising=False)
+        monkeypatch.delitem(sys.modules, f"benchmarks.tracing.{module}", raising=False)
+        monkeypatch.delattr(f"benchmarks.tracing.{module}", raising=False)
     refused("pip install '.[bench]'", "bench", "tracer")
-    monkeypatch.setitem(sys.modules, "tracer", None)
+    monkeypatch.setitem(sys.modules, "svgf_cl_tracer.api", None)
     refused("pip install '.[tracer]'", "bench", "tracer")

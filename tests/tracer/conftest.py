@@ -5,9 +5,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from tracer.geometry import Instance
-from tracer.materials import Material
-from tracer.motion import Motion
+from svgf_cl_tracer.geometry import Instance
+from svgf_cl_tracer.materials import Material
+from svgf_cl_tracer.motion import Motion
 
 Quad = Callable[..., Instance]
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from svgf_cl.frame import Frame
-from tracer import Camera, CameraPath, Scene, Shot, render_frame
+from svgf_cl_tracer import Camera, CameraPath, Scene, Shot, render_frame
 
 # Looks at one point of the floor, the origin, through a very long lens, from below all lamps.
 AT_ORIGIN = Camera((0.15, 0.5, 0.2), (0.0, 0.0, 0.0), fov_y=0.01)

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tracer.boxes import EVERYWHERE, bounds, corners_of_box, passing
-from tracer.trees import FAR
+from svgf_cl_tracer.boxes import EVERYWHERE, bounds, corners_of_box, passing
+from svgf_cl_tracer.trees import FAR
 
 # More than single precision moves the end of a ray by that is so long.
 ROOM = 1e-2

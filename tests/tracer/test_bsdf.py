@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from tracer import bsdf
-from tracer.bsdf import Reflection, reflection
-from tracer.energy import ALPHA_FLOOR, mean_terms, terms
-from tracer.vec3 import Vec3
+from svgf_cl_tracer import bsdf
+from svgf_cl_tracer.bsdf import Reflection, reflection
+from svgf_cl_tracer.energy import ALPHA_FLOOR, mean_terms, terms
+from svgf_cl_tracer.vec3 import Vec3
 
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 WHITES = {"dielectric": reflection(WHITE, 0.0, 0.0, 1.5), "metal": reflection(WHITE, 1.0, 0.0, 1.5)}

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tracer.camera import OUTSIDE, Camera, CameraPath, Lens, project, ray_through
-from tracer.errors import SceneError
+from svgf_cl_tracer.camera import OUTSIDE, Camera, CameraPath, Lens, project, ray_through
+from svgf_cl_tracer.errors import SceneError
 
 AHEAD = Camera((0, 0, 0), (0, 0, -1), fov_y=90.0)
 SHAPE = (240, 320)

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tracer.checkpoints import Checkpoints
-from tracer.estimate import Estimate, Step
+from svgf_cl_tracer.checkpoints import Checkpoints
+from svgf_cl_tracer.estimate import Estimate, Step
 
 NOTHING = Estimate.nothing(7)
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tracer.energy import ALPHA_FLOOR, mean_terms, terms
+from svgf_cl_tracer.energy import ALPHA_FLOOR, mean_terms, terms
 
 # Midpoints: the mean over the projected hemisphere is that of cosine^2.
 SQUARES = (np.arange(20_000) + 0.5) / 20_000

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from svgf_cl.compare.metrics import relmse
-from tracer.estimate import Estimate
+from svgf_cl_tracer.estimate import Estimate
 
 PIXELS = 6
 

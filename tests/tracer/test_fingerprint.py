@@ -15,19 +15,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tracer import Camera, builtin_scene, fingerprint
-from tracer.fingerprint import tracer_version
-from tracer.geometry import Instance
-from tracer.materials import Material
-from tracer.motion import Motion
+from svgf_cl_tracer import Camera, builtin_scene, fingerprint
+from svgf_cl_tracer.fingerprint import tracer_version
+from svgf_cl_tracer.geometry import Instance
+from svgf_cl_tracer.materials import Material
+from svgf_cl_tracer.motion import Motion
 
 CORNERS = np.arange(18.0).reshape(2, 3, 3)
 TEXTURE = np.full((4, 4, 3), 7, np.uint8)
 OBJECT = Instance(CORNERS, Material(base_texture=TEXTURE), motion=Motion.sliding([0.0, 1.0], [[0, 0, 0], [1, 0, 0]]))
 
 ELSEWHERE = """
-from tracer import builtin_scene
-from tracer.fingerprint import fingerprint, tracer_version
+from svgf_cl_tracer import builtin_scene
+from svgf_cl_tracer.fingerprint import fingerprint, tracer_version
 print(fingerprint(builtin_scene().instances), tracer_version())
 """
 
@@ -82,6 +82,9 @@ def test_what_has_no_content_to_compare_is_refused(unknown: object) -> None:
 def test_another_tracer_has_another_version(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     copy = shutil.copytree(Path(fingerprint.__file__).parent, tmp_path / "tracer")
     monkeypatch.setattr(fingerprint, "__file__", str(copy / "fingerprint.py"))
+    assert tracer_version.__wrapped__() == tracer_version()
+    (copy / "demo.py").write_text("something else")
+    (copy / "cli" / "render.py").write_text("something else")
     assert tracer_version.__wrapped__() == tracer_version()
     (copy / "camera.py").write_text("something else")
     assert tracer_version.__wrapped__() != tracer_version()

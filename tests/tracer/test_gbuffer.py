@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from svgf_cl.frame import Frame
+from svgf_cl_tracer import Camera, CameraPath, Scene, Shot, render_frame
+from svgf_cl_tracer.camera import ray_through
+from svgf_cl_tracer.geometry import Instance
+from svgf_cl_tracer.materials import Material
+from svgf_cl_tracer.motion import Keyframes, Motion, Track
+from svgf_cl_tracer.render import FRAME, MOMENTS
+from svgf_cl_tracer.sampling import pixel_jitter, random4, stream_key
+from svgf_cl_tracer.shading import LENS_DRAW, PIXEL_DRAW
 from tests.tracer.estimates import still
-from tracer import Camera, CameraPath, Scene, Shot, render_frame
-from tracer.camera import ray_through
-from tracer.geometry import Instance
-from tracer.materials import Material
-from tracer.motion import Keyframes, Motion, Track
-from tracer.render import FRAME, MOMENTS
-from tracer.sampling import pixel_jitter, random4, stream_key
-from tracer.shading import LENS_DRAW, PIXEL_DRAW
 
 SHAPE = (45, 80)
 WHITE = (1.0, 1.0, 1.0)

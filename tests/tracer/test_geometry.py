@@ -8,10 +8,10 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tracer.errors import SceneError
-from tracer.geometry import Instance, Triangles, cofactors, corners_of, interpolated, surface_at
-from tracer.materials import Material
-from tracer.motion import Keyframes, Motion, Track
+from svgf_cl_tracer.errors import SceneError
+from svgf_cl_tracer.geometry import Instance, Triangles, cofactors, corners_of, interpolated, surface_at
+from svgf_cl_tracer.materials import Material
+from svgf_cl_tracer.motion import Keyframes, Motion, Track
 
 DOWN, UP = (0.0, -1.0, 0.0), (0.0, 1.0, 0.0)
 BALL = trimesh.creation.icosphere(2)

@@ -14,16 +14,16 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from svgf_cl.frame import CHANNELS
+from svgf_cl_tracer import Camera, CameraPath, Shot, builtin_scene, integrator, load_scene, render_frame
+from svgf_cl_tracer.geometry import Instance
+from svgf_cl_tracer.lights import PointLight, Sun
+from svgf_cl_tracer.materials import Material
+from svgf_cl_tracer.motion import Motion
+from svgf_cl_tracer.paths import Paths
+from svgf_cl_tracer.scene import Scene
+from svgf_cl_tracer.sky import Environment
+from svgf_cl_tracer.trees import Hits, Trees
 from tests.tracer.estimates import AT_ORIGIN, assert_mean, still, under_rectangle
-from tracer import Camera, CameraPath, Shot, builtin_scene, integrator, load_scene, render_frame
-from tracer.geometry import Instance
-from tracer.lights import PointLight, Sun
-from tracer.materials import Material
-from tracer.motion import Motion
-from tracer.paths import Paths
-from tracer.scene import Scene
-from tracer.sky import Environment
-from tracer.trees import Hits, Trees
 
 CORNELL = Path(__file__).parents[3] / "shared" / "scenes" / "cornell_box"
 

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from svgf_cl_tracer.compiled import compiled
+from svgf_cl_tracer.geometry import Instance, Triangles
+from svgf_cl_tracer.light_sampling import Lights, lamp_density, mis_weight, outside_radiance, sample_light
+from svgf_cl_tracer.lights import PointLight, Sun
+from svgf_cl_tracer.materials import Material, Materials
+from svgf_cl_tracer.motion import Motion, Track
+from svgf_cl_tracer.scene import Scene, Tables
+from svgf_cl_tracer.sky import Environment, SkyTable
+from svgf_cl_tracer.vec3 import Vec3
 from tests.tracer.estimates import under_rectangle
-from tracer.compiled import compiled
-from tracer.geometry import Instance, Triangles
-from tracer.light_sampling import Lights, lamp_density, mis_weight, outside_radiance, sample_light
-from tracer.lights import PointLight, Sun
-from tracer.materials import Material, Materials
-from tracer.motion import Motion, Track
-from tracer.scene import Scene, Tables
-from tracer.sky import Environment, SkyTable
-from tracer.vec3 import Vec3
 
 COUNT = 40_000
 BLACK = (0.0, 0.0, 0.0)

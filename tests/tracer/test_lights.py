@@ -3,9 +3,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tracer.errors import SceneError
-from tracer.lights import PointLight, Sun
-from tracer.motion import Keyframes, Motion, Track
+from svgf_cl_tracer.errors import SceneError
+from svgf_cl_tracer.lights import PointLight, Sun
+from svgf_cl_tracer.motion import Keyframes, Motion, Track
 
 
 def test_a_light_at_rest_is_where_it_was_put() -> None:

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from svgf_cl_tracer import Camera, CameraPath, Scene, SceneError, Shot, load_scene, render_frame
+from svgf_cl_tracer.textures import LINEAR
 from tests.tracer.gltf_files import Buffers, png, uri, write_gltf
-from tracer import Camera, CameraPath, Scene, SceneError, Shot, load_scene, render_frame
-from tracer.textures import LINEAR
 
 SKY = (1.0, 1.0, 1.0)
 # Red and green above blue and white; the green is a hole where alpha counts.

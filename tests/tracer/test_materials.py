@@ -3,10 +3,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tracer.errors import SceneError
-from tracer.materials import Material, Materials, base_colour, emitted_radiance, is_solid
-from tracer.motion import Track
-from tracer.textures import LINEAR
+from svgf_cl_tracer.errors import SceneError
+from svgf_cl_tracer.materials import Material, Materials, base_colour, emitted_radiance, is_solid
+from svgf_cl_tracer.motion import Track
+from svgf_cl_tracer.textures import LINEAR
 
 IMAGE = np.full((2, 2, 3), (10, 128, 255), np.uint8)
 LEAF = np.array([[[255, 255, 255, 0], [255, 255, 255, 255]]], np.uint8)

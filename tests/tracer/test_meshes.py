@@ -5,11 +5,11 @@ import PIL.Image
 import pytest
 import trimesh
 
+from svgf_cl_tracer import SceneError, meshes
+from svgf_cl_tracer.materials import Material
+from svgf_cl_tracer.meshes import Images, instance
+from svgf_cl_tracer.motion import Keyframes, Motion, Track
 from tests.tracer.gltf_files import CORNERS, NORMAL
-from tracer import SceneError, meshes
-from tracer.materials import Material
-from tracer.meshes import Images, instance
-from tracer.motion import Keyframes, Motion, Track
 
 GREY = Material()
 

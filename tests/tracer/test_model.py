@@ -2,11 +2,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.geometry import Instance
-from tracer.lights import PointLight, Sun
-from tracer.materials import Material
-from tracer.model import Light, Model, Object
-from tracer.motion import Motion
+from svgf_cl_tracer.geometry import Instance
+from svgf_cl_tracer.lights import PointLight, Sun
+from svgf_cl_tracer.materials import Material
+from svgf_cl_tracer.model import Light, Model, Object
+from svgf_cl_tracer.motion import Motion
 
 UP, WIDER = Motion.sliding([0, 1], [[0, 0, 0], [0, 2, 0]]), Motion([np.diag([3.0, 1.0, 1.0, 1.0])])
 STEEL = Material()

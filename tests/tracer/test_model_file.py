@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from svgf_cl_tracer import SceneError
+from svgf_cl_tracer.model_file import load_model
 from tests.tracer.gltf_files import write_gltf
-from tracer import SceneError
-from tracer.model_file import load_model
 
 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:

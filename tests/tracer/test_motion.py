@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation, Slerp
 
-from tracer.errors import SceneError
-from tracer.motion import Keyframes, Motion, Track, rotation_matrix
+from svgf_cl_tracer.errors import SceneError
+from svgf_cl_tracer.motion import Keyframes, Motion, Track, rotation_matrix
 
 RAMP = Track([1.0, 2.0, 4.0], [[0.0, 10.0], [2.0, 10.0], [-2.0, 30.0]])
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
+from svgf_cl_tracer.obj import load_obj
 from tests.tracer.gltf_files import png
-from tracer.obj import load_obj
 
 PIXELS = np.arange(12, dtype=np.uint8).reshape(2, 2, 3)
 

@@ -6,8 +6,8 @@ import numpy as np
 import OpenImageIO as oiio  # noqa: N813
 import pytest
 
+from svgf_cl_tracer import SceneError, load_environment, panorama
 from tests.tracer.gltf_files import png
-from tracer import SceneError, load_environment, panorama
 
 PIXELS = np.arange(24, dtype=np.float32).reshape(2, 4, 3)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from svgf_cl.frame import CHANNELS
-from tracer.paths import Features, Paths, Radiance, ShadowRays
+from svgf_cl_tracer.paths import Features, Paths, Radiance, ShadowRays
 
 
 @pytest.mark.parametrize("kind", [Paths, ShadowRays])

@@ -19,11 +19,11 @@ from svgf_cl.compare.metrics import relmse
 from svgf_cl.io import cache
 from svgf_cl.io.exr import read_channels
 from svgf_cl.io.frames import read_frame
-from tracer import Camera, CameraPath, Goal, References, Scene, SceneError, Shot, builtin_scene, render_frame
-from tracer.estimate import Estimate
-from tracer.references import CHUNK, chunks
-from tracer.render import TILE
-from tracer.sky import Environment
+from svgf_cl_tracer import Camera, CameraPath, Goal, References, Scene, SceneError, Shot, builtin_scene, render_frame
+from svgf_cl_tracer.estimate import Estimate
+from svgf_cl_tracer.references import CHUNK, chunks
+from svgf_cl_tracer.render import TILE
+from svgf_cl_tracer.sky import Environment
 
 ROOM = Shot(builtin_scene(), (18, 32), frames=3)
 
@@ -31,7 +31,7 @@ KILLED = """
 import sys
 from pathlib import Path
 from svgf_cl.io import cache
-from tracer import Goal, References, Shot, builtin_scene
+from svgf_cl_tracer import Goal, References, Shot, builtin_scene
 cache.cache_folder = lambda: Path(sys.argv[1])
 for estimate in References(Shot(builtin_scene(), (18, 32), frames=3)).refine(1, Goal(10**6)):
     print(estimate.spp, flush=True)

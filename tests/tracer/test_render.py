@@ -11,17 +11,17 @@ import pytest
 import trimesh
 from numpy.typing import NDArray
 
+from svgf_cl_tracer import CameraPath, Scene, SceneError, Shot, render, render_frame, render_sequence
+from svgf_cl_tracer.camera import Camera
+from svgf_cl_tracer.geometry import Instance
+from svgf_cl_tracer.lights import PointLight, Sun
+from svgf_cl_tracer.materials import Material
+from svgf_cl_tracer.motion import Motion, Track
+from svgf_cl_tracer.render import FRAME, REFERENCE, Features, Sampler
+from svgf_cl_tracer.sampling import pixel_jitter
+from svgf_cl_tracer.sky import Environment
+from svgf_cl_tracer.textures import LINEAR
 from tests.tracer.estimates import AT_ORIGIN
-from tracer import CameraPath, Scene, SceneError, Shot, render, render_frame, render_sequence
-from tracer.camera import Camera
-from tracer.geometry import Instance
-from tracer.lights import PointLight, Sun
-from tracer.materials import Material
-from tracer.motion import Motion, Track
-from tracer.render import FRAME, REFERENCE, Features, Sampler
-from tracer.sampling import pixel_jitter
-from tracer.sky import Environment
-from tracer.textures import LINEAR
 
 SHAPE = (24, 32)
 BLACK, WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)

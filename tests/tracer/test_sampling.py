@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from tracer.compiled import compiled
-from tracer.render import FRAME, REFERENCE
-from tracer.sampling import JITTER_PERIOD, halton, on_circle, pixel_jitter, random4, stream_key
+from svgf_cl_tracer.compiled import compiled
+from svgf_cl_tracer.render import FRAME, REFERENCE
+from svgf_cl_tracer.sampling import JITTER_PERIOD, halton, on_circle, pixel_jitter, random4, stream_key
 
 COUNT = 1 << 16
 ARGUMENTS = ("key", "pixel", "sample", "draw")

@@ -6,16 +6,16 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from tracer.camera import Camera, CameraPath, project
-from tracer.errors import SceneError
-from tracer.geometry import Instance
-from tracer.lights import PointLight, Sun
-from tracer.materials import Material
-from tracer.motion import Motion, Track
-from tracer.render import render_frame
-from tracer.scene import Scene
-from tracer.shot import Shot
-from tracer.sky import Environment
+from svgf_cl_tracer.camera import Camera, CameraPath, project
+from svgf_cl_tracer.errors import SceneError
+from svgf_cl_tracer.geometry import Instance
+from svgf_cl_tracer.lights import PointLight, Sun
+from svgf_cl_tracer.materials import Material
+from svgf_cl_tracer.motion import Motion, Track
+from svgf_cl_tracer.render import render_frame
+from svgf_cl_tracer.scene import Scene
+from svgf_cl_tracer.shot import Shot
+from svgf_cl_tracer.sky import Environment
 
 BLACK, WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 SLIDE = Motion.sliding([0.0, 1.0], [(0, 0, 0), (4, 0, 0)])

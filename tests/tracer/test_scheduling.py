@@ -20,9 +20,9 @@ from svgf_cl import Frame
 from svgf_cl.cli import main
 from svgf_cl.io import cache
 from svgf_cl.io.exr import read_channels
-from tracer import Goal, References, SceneError, Shot, builtin_scene, render_frame, scheduled, scheduling
-from tracer.references import CHUNK
-from tracer.scheduling import here
+from svgf_cl_tracer import Goal, References, SceneError, Shot, builtin_scene, render_frame, scheduled, scheduling
+from svgf_cl_tracer.references import CHUNK
+from svgf_cl_tracer.scheduling import here
 
 ROOM = Shot(builtin_scene(), (36, 64), frames=9)
 WORKERS = 3

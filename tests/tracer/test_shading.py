@@ -10,17 +10,17 @@ import pytest
 import trimesh
 from numpy.typing import NDArray
 
+from svgf_cl_tracer.bsdf import Reflection, evaluate_diffuse, evaluate_specular, reflection
+from svgf_cl_tracer.camera import Camera
+from svgf_cl_tracer.compiled import compiled
+from svgf_cl_tracer.geometry import Instance
+from svgf_cl_tracer.lights import Sun
+from svgf_cl_tracer.materials import Material
+from svgf_cl_tracer.scene import Scene
+from svgf_cl_tracer.sky import Environment, sky_radiance, sky_table
+from svgf_cl_tracer.textures import LINEAR
+from svgf_cl_tracer.vec3 import Vec3, to_local
 from tests.tracer.estimates import assert_mean, still
-from tracer.bsdf import Reflection, evaluate_diffuse, evaluate_specular, reflection
-from tracer.camera import Camera
-from tracer.compiled import compiled
-from tracer.geometry import Instance
-from tracer.lights import Sun
-from tracer.materials import Material
-from tracer.scene import Scene
-from tracer.sky import Environment, sky_radiance, sky_table
-from tracer.textures import LINEAR
-from tracer.vec3 import Vec3, to_local
 
 BLACK, WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 UP = (0.0, 1.0, 0.0)

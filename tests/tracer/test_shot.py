@@ -4,12 +4,12 @@ from collections.abc import Callable
 
 import pytest
 
-from tracer.camera import Camera, CameraPath
-from tracer.errors import SceneError
-from tracer.geometry import Instance
-from tracer.materials import Material
-from tracer.scene import Scene
-from tracer.shot import Shot
+from svgf_cl_tracer.camera import Camera, CameraPath
+from svgf_cl_tracer.errors import SceneError
+from svgf_cl_tracer.geometry import Instance
+from svgf_cl_tracer.materials import Material
+from svgf_cl_tracer.scene import Scene
+from svgf_cl_tracer.shot import Shot
 
 PATH = CameraPath.through([Camera((0, 1, 5), (0, 0, 0)), Camera((4, 1, 5), (4, 0, 0))])
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tracer.errors import SceneError
-from tracer.sky import Environment, SkyTable, sample_sky, sky_density, sky_radiance, sky_table
-from tracer.vec3 import Vec3
+from svgf_cl_tracer.errors import SceneError
+from svgf_cl_tracer.sky import Environment, SkyTable, sample_sky, sky_density, sky_radiance, sky_table
+from svgf_cl_tracer.vec3 import Vec3
 
 # A turn about an axis without a name.
 TURN = np.array([[2, -1, 2], [2, 2, -1], [-1, 2, 2]]) / 3.0

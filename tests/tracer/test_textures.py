@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tracer.textures import LINEAR, Textures, srgb_to_linear, texture_colour, texture_opacity
+from svgf_cl_tracer.textures import LINEAR, Textures, srgb_to_linear, texture_colour, texture_opacity
 
 SMALL = np.arange(0, 180, 10, dtype=np.uint8).reshape(2, 3, 3)
 OTHER = np.full((1, 1, 3), (255, 0, 128), np.uint8)

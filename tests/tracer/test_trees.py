@@ -7,11 +7,11 @@ import pytest
 import trimesh
 from numpy.typing import NDArray
 
-from tracer.geometry import Instance, lift
-from tracer.materials import Material, Materials, is_solid
-from tracer.motion import Motion
-from tracer.scene import Scene
-from tracer.trees import FAR, MISS, Hits, Trees
+from svgf_cl_tracer.geometry import Instance, lift
+from svgf_cl_tracer.materials import Material, Materials, is_solid
+from svgf_cl_tracer.motion import Motion
+from svgf_cl_tracer.scene import Scene
+from svgf_cl_tracer.trees import FAR, MISS, Hits, Trees
 
 DOWN = (0.0, -1.0, 0.0)
 # Opaque and transparent in turns, both across and up.

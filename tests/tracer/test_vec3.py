@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tracer import vec3
-from tracer.compiled import compiled
+from svgf_cl_tracer import vec3
+from svgf_cl_tracer.compiled import compiled
 
 A, B = (1.0, -2.0, 3.0), (0.5, 4.0, -1.5)
 NORMALS = [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0), (0.36, 0.48, 0.8), (0.48, -0.6, -0.64)]

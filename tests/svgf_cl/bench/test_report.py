@@ -79,7 +79,8 @@ def png(width: int, height: int) -> bytes:
 def test_a_browser_shows_all_of_it(tmp_path: Path) -> None:
     old = run(result("temporal", "event", 13.0))
     more = Section("Speed against error", inline_png(png(31, 7), "a plot"), [Table("t", ("a", "b"), [("1", "<2>")])])
-    report.write(whole_run(), tmp_path, old=old, more=[more])
+    first = Section("Bars", tables=[Table("bars", ("bar", ""), [(f"bar {n}", "holds") for n in range(6)])])
+    report.write(whole_run(), tmp_path, old=old, first=[first], more=[more])
     seen, complaints = look_at(tmp_path / "report.html", tmp_path / "profile")
     assert complaints == []
     assert seen["fetched"] == []

@@ -63,7 +63,7 @@ def test_a_frame_knows_its_cost_and_memory() -> None:
 
 
 def test_no_name_matches() -> None:
-    with pytest.raises(SvgfError, match=r"--filter: expected part of a name such as .*, got nothing"):
+    with pytest.raises(SvgfError, match=r"--only: expected part of a name such as .*, got nothing"):
         Suite(re.compile("nothing"), [SMALL]).run(Steps().bar)
 
 

@@ -9,8 +9,8 @@ import pytest
 from benchmarks.mistakes import MISTAKES, ROOM, good_sequence
 from svgf_cl import check_sequence
 from svgf_cl.check import alignment, motion, surfaces
+from svgf_cl_tracer import BUILTIN
 from tests.svgf_cl.check.scenes import FRAMES, SHAPE, good
-from tracer import BUILTIN
 
 SCENES = Path(__file__).parents[4] / "shared" / "scenes"
 REAL = ("sponza", "classroom", "living_room", "garden", "veach_ajar", "cornell_box")

@@ -23,7 +23,7 @@ from svgf_cl.io.frames import read_frame, write_frame
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-import tracer
+import svgf_cl_tracer
 from svgf_cl.io import cache
 from svgf_cl.cli import main
 left, folder, rename = int(sys.argv[1]), Path(sys.argv[2]), os.replace
@@ -120,7 +120,7 @@ def test_render_keeps_only_what_it_would_make(rendered: Path, tmp_path: Path, ca
 
 def test_render_keeps_nothing_of_another_version(rendered: Path, tmp_path: Path, capsys, monkeypatch) -> None:
     folder = Path(shutil.copytree(rendered, tmp_path / "frames"))
-    monkeypatch.setattr("tracer.shot.tracer_version", lambda: "another")
+    monkeypatch.setattr("svgf_cl_tracer.shot.tracer_version", lambda: "another")
     assert run("render", "cornell", *FRAMES, "-o", folder) == 0
     assert "kept" not in capsys.readouterr().out
 

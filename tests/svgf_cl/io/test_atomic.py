@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl import SequenceError
+from svgf_cl import FileError
 from svgf_cl.io.atomic import make_folder, read_json, written_whole
 from svgf_cl.io.display import write_image
 from svgf_cl.io.panels import write_preview
@@ -47,7 +47,7 @@ def test_what_breaks_off_leaves_the_old_file_and_nothing_else(tmp_path: Path) ->
 
 def test_an_error_of_the_system_names_the_file(tmp_path: Path) -> None:
     with (
-        pytest.raises(SequenceError, match=r"a\.txt: cannot be written \(No space left"),
+        pytest.raises(FileError, match=r"a\.txt: cannot be written \(No space left"),
         written_whole(tmp_path / "a.txt"),
     ):
         raise OSError(28, "No space left on device")
@@ -55,7 +55,7 @@ def test_an_error_of_the_system_names_the_file(tmp_path: Path) -> None:
 
 def test_an_error_of_the_system_comes_before_any_work(tmp_path: Path) -> None:
     with (
-        pytest.raises(SequenceError, match=r"a\.txt: cannot be written \(No such file"),
+        pytest.raises(FileError, match=r"a\.txt: cannot be written \(No such file"),
         written_whole(tmp_path / "nowhere" / "a.txt"),
     ):
         pytest.fail("there is nothing to write to")
@@ -80,7 +80,7 @@ def test_a_full_disk_is_reported_and_leaves_the_old_file(name: str, tmp_path: Pa
     FULL[name](path)
     old = path.read_bytes()
     for limit in (0, 100, len(old) // 2, len(old) - 1):
-        with files_up_to(limit), pytest.raises(SequenceError, match=rf"{name}: cannot be written \(File too large\)"):
+        with files_up_to(limit), pytest.raises(FileError, match=rf"{name}: cannot be written \(File too large\)"):
             FULL[name](path)
         assert path.read_bytes() == old
         assert list(tmp_path.iterdir()) == [path]
@@ -120,11 +120,11 @@ def test_folders_are_made_with_their_parents(tmp_path: Path) -> None:
 def test_what_cannot_be_a_folder_is_refused(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     for path in (tmp_path / "file", tmp_path / "file" / "below"):
-        with pytest.raises(SequenceError, match="cannot be made a folder"):
+        with pytest.raises(FileError, match="cannot be made a folder"):
             make_folder(path)
 
 
 def test_a_folder_that_is_read_only_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "access", lambda *_: False)  # root may write anywhere
-    with pytest.raises(SequenceError, match="read-only"):
+    with pytest.raises(FileError, match="read-only"):
         make_folder(tmp_path)

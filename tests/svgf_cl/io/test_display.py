@@ -8,7 +8,8 @@ import numpy as np
 import OpenImageIO as oiio  # noqa: N813  # its documentation calls it so
 import pytest
 
-from svgf_cl import SequenceError
+from svgf_cl import FileError
+from svgf_cl.frame import LUMINANCE
 from svgf_cl.io import display
 
 RNG = np.random.default_rng(5)
@@ -32,7 +33,7 @@ def test_nan_is_shown_black_and_infinity_white() -> None:
 def test_automatic_exposure_brings_the_log_average_to_middle_grey() -> None:
     blocks = RNG.lognormal(size=(3, 4, 1)) * np.array([1.0, 0.5, 0.2])
     linear = blocks.repeat(display.BLOCK, 0).repeat(display.BLOCK, 1)[:-3, :-5]  # the last blocks are cut
-    luminance = (blocks * 2.0 ** display.automatic_exposure(linear)) @ display.LUMINANCE
+    luminance = (blocks * 2.0 ** display.automatic_exposure(linear)) @ np.array(LUMINANCE)
     assert np.exp(np.log(luminance).mean()) == pytest.approx(0.18)
 
 
@@ -62,5 +63,5 @@ def test_webp_comes_back_nearly(tmp_path: Path) -> None:
 
 
 def test_an_unwritable_picture_is_an_error_that_names_it(tmp_path: Path) -> None:
-    with pytest.raises(SequenceError, match=r"nowhere/a\.png: cannot be written"):
+    with pytest.raises(FileError, match=r"nowhere/a\.png: cannot be written"):
         display.write_image(tmp_path / "nowhere" / "a.png", np.zeros((2, 2, 3), np.uint8))

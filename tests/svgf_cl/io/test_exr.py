@@ -15,7 +15,7 @@ import numpy as np
 import OpenImageIO as oiio  # noqa: N813
 import pytest
 
-from svgf_cl import SequenceError
+from svgf_cl import FileError
 from svgf_cl.io import exr
 from svgf_cl.io.exr import read_attribute, read_channels, write_channels
 from tests.disk import files_up_to, unprivileged
@@ -67,10 +67,10 @@ def test_any_name_will_do(name: str, tmp_path: Path) -> None:
 
 def test_a_name_that_is_no_text_is_refused(tmp_path: Path) -> None:
     path = tmp_path / os.fsdecode(b"\xff.exr")
-    with pytest.raises(SequenceError, match=r"udcff.*: expected a name in UTF-8"):
+    with pytest.raises(FileError, match=r"udcff.*: expected a name in UTF-8"):
         write_channels(path, PLANES)
     path.touch()
-    with pytest.raises(SequenceError, match=r"udcff.*: expected a name in UTF-8"):
+    with pytest.raises(FileError, match=r"udcff.*: expected a name in UTF-8"):
         read_channels(path)
     assert list(tmp_path.iterdir()) == [path]
 
@@ -92,12 +92,12 @@ def test_a_name_that_is_no_text_is_refused(tmp_path: Path) -> None:
 )
 def test_what_is_no_exr_file_is_refused(make: Callable[[Path], object], words: str, tmp_path: Path) -> None:
     make(tmp_path / "a.exr")
-    with pytest.raises(SequenceError, match=rf"a\.exr: .*{words}"):
+    with pytest.raises(FileError, match=rf"a\.exr: .*{words}"):
         read_channels(tmp_path / "a.exr")
 
 
 def test_a_file_behind_a_closed_door_is_refused(path: Path) -> None:
-    with unprivileged(path.parent), pytest.raises(SequenceError, match=r"a\.exr: cannot be read \(Permission denied\)"):
+    with unprivileged(path.parent), pytest.raises(FileError, match=r"a\.exr: cannot be read \(Permission denied\)"):
         read_channels(path)
 
 
@@ -108,7 +108,7 @@ def test_a_file_cut_off_anywhere_is_refused(path: Path) -> None:
     content = path.read_bytes()
     for length in range(len(content)):
         path.write_bytes(content[:length])
-        with pytest.raises(SequenceError, match=r"a\.exr: expected"):
+        with pytest.raises(FileError, match=r"a\.exr: expected"):
             read_channels(path)
 
 
@@ -126,7 +126,7 @@ def test_a_file_with_wrong_bits_is_refused_or_has_planes(seed: int, path: Path) 
         try:
             shapes = {plane.shape for plane in read_channels(path).values()}
             assert len(shapes) == 1
-        except SequenceError as error:
+        except FileError as error:
             assert str(path) in str(error)  # noqa: PT017  # either will do
             refused += 1
     assert refused > 100
@@ -134,7 +134,7 @@ def test_a_file_with_wrong_bits_is_refused_or_has_planes(seed: int, path: Path) 
 
 def test_a_header_that_is_no_text_is_refused(path: Path) -> None:
     path.write_bytes(path.read_bytes().replace(b"chlist", b"chl\xffst"))
-    with pytest.raises(SequenceError, match=r"a\.exr: expected text in UTF-8 in its header"):
+    with pytest.raises(FileError, match=r"a\.exr: expected text in UTF-8 in its header"):
         read_channels(path)
 
 
@@ -185,14 +185,14 @@ MAX_GROWTH = 256 * 2**20
 READ_ALL = """
 import json, resource, sys
 from pathlib import Path
-from svgf_cl import SequenceError
+from svgf_cl import FileError
 from svgf_cl.io.exr import read_channels
 peak = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
 said, before = {}, peak()
 for path in sorted(Path(sys.argv[1]).iterdir()):
     try:
         read_channels(path)
-    except SequenceError as error:
+    except FileError as error:
         said[path.name] = str(error)
 print(json.dumps([said, peak() - before]))
 """
@@ -214,7 +214,7 @@ def test_more_pixels_than_a_file_can_hold_are_refused(path: Path, monkeypatch: p
     monkeypatch.setattr(exr, "MAX_RATIO", 0.5)
     assert_whole(path)
     monkeypatch.setattr(exr, "TRUSTED", 11 * 7 * 16 - 1)
-    with pytest.raises(SequenceError, match=r"a\.exr: expected a whole image, got 1232 bytes of pixels in a file of"):
+    with pytest.raises(FileError, match=r"a\.exr: expected a whole image, got 1232 bytes of pixels in a file of"):
         read_channels(path)
 
 
@@ -231,7 +231,7 @@ def test_too_little_memory_names_the_file(path: Path, monkeypatch: pytest.Monkey
     monkeypatch.setattr(exr.np, "ascontiguousarray", full)
     monkeypatch.setattr(exr, "_described", full)
     path.write_text("no image")
-    with pytest.raises(SequenceError, match=r"a\.exr: expected an image that fits into memory"):
+    with pytest.raises(FileError, match=r"a\.exr: expected an image that fits into memory"):
         read_channels(path)
 
 
@@ -242,7 +242,7 @@ def test_a_disk_that_is_full_at_any_place_is_reported(path: Path) -> None:
     old = path.read_bytes()
     size = len(old)
     for limit in (*range(0, size - 40, 61), *range(size - 40, size)):
-        with files_up_to(limit), pytest.raises(SequenceError, match=r"a\.exr: cannot be written"):
+        with files_up_to(limit), pytest.raises(FileError, match=r"a\.exr: cannot be written"):
             write_channels(path, PLANES, {"svgf_cl:spp": 16})
         assert path.read_bytes() == old
         assert list(path.parent.iterdir()) == [path]
@@ -253,14 +253,14 @@ def test_a_disk_that_is_full_at_any_place_is_reported(path: Path) -> None:
 
 def test_a_folder_in_the_way_and_a_folder_that_is_not_there(tmp_path: Path) -> None:
     (tmp_path / "taken.exr").mkdir()
-    with pytest.raises(SequenceError, match=re.escape("taken.exr: cannot be written (Is a directory)")):
+    with pytest.raises(FileError, match=re.escape("taken.exr: cannot be written (Is a directory)")):
         write_channels(tmp_path / "taken.exr", PLANES)
-    with pytest.raises(SequenceError, match=re.escape("a.exr: cannot be written (No such file or directory)")):
+    with pytest.raises(FileError, match=re.escape("a.exr: cannot be written (No such file or directory)")):
         write_channels(tmp_path / "nowhere" / "a.exr", PLANES)
     assert [path.name for path in tmp_path.iterdir()] == ["taken.exr"]
 
 
 def test_a_folder_behind_a_closed_door(path: Path) -> None:
-    with unprivileged(path.parent), pytest.raises(SequenceError, match=r"cannot be written \(Permission denied\)"):
+    with unprivileged(path.parent), pytest.raises(FileError, match=r"cannot be written \(Permission denied\)"):
         write_channels(path, PLANES)
     assert_whole(path)

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from svgf_cl import Frame, FrameError, SequenceError
+from svgf_cl import FileError, Frame, FrameError
 from svgf_cl.frame import CARRIED, CHANNELS
 from svgf_cl.io.exr import read_channels, write_channels
 from svgf_cl.io.frames import (
@@ -99,7 +99,7 @@ def test_frames_are_sorted_by_number_and_nothing_else_is_a_frame(tmp_path: Path)
 def test_a_gap_in_a_folder_is_named(tmp_path: Path) -> None:
     for number in (3, 4, 7):
         frame_path(tmp_path, number).touch()
-    with pytest.raises(SequenceError, match=r"frame\.0005\.exr: expected this frame between frame\.0004\.exr and"):
+    with pytest.raises(FileError, match=r"frame\.0005\.exr: expected this frame between frame\.0004\.exr and"):
         find_frames([tmp_path])
     files = [frame_path(tmp_path, 3), frame_path(tmp_path, 7)]
     assert find_frames(files) == files, "chosen by hand"
@@ -113,7 +113,7 @@ def test_leftovers_are_named(tmp_path: Path) -> None:
     check_leftovers(tmp_path, written)
     for name in ("frame.0001.exr", "frame.0007.png", "reference.0000.exr", "still.0001.png"):
         (tmp_path / name).touch()
-        with pytest.raises(SequenceError, match=f"{name}: left by an earlier run"):
+        with pytest.raises(FileError, match=f"{name}: left by an earlier run"):
             check_leftovers(tmp_path, written)
         (tmp_path / name).unlink()
 
@@ -125,14 +125,14 @@ def test_files_are_taken_as_given(tmp_path: Path) -> None:
 
 
 def test_an_empty_or_missing_folder_is_an_error(tmp_path: Path) -> None:
-    with pytest.raises(SequenceError, match=r"expected files named frame\.0000\.exr"):
+    with pytest.raises(FileError, match=r"expected files named frame\.0000\.exr"):
         find_frames([tmp_path])
-    with pytest.raises(SequenceError, match="nowhere: expected a file or a folder, found nothing"):
+    with pytest.raises(FileError, match="nowhere: expected a file or a folder, found nothing"):
         find_frames([tmp_path / "nowhere"])
 
 
 def test_a_great_id_is_refused_and_leaves_no_file(tmp_path: Path) -> None:
-    with pytest.raises(SequenceError, match="expected ids up to 16777216"):
+    with pytest.raises(FileError, match="expected ids up to 16777216"):
         write_frame(tmp_path / "frame.0000.exr", plain_frame(id=np.full((3, 4), MAX_ID + 1, np.uint32)))
     assert list(tmp_path.iterdir()) == []
 
@@ -142,7 +142,7 @@ def test_an_id_that_is_no_whole_number_is_refused(tmp_path: Path, value: float) 
     path = tmp_path / "frame.0000.exr"
     write_frame(path, plain_frame(id=np.ones((3, 4), np.uint32)))
     write_channels(path, {**read_channels(path), "id": np.full((3, 4), value, np.float32)})
-    with pytest.raises(SequenceError, match=r"frame\.0000\.exr: expected whole numbers"):
+    with pytest.raises(FileError, match=r"frame\.0000\.exr: expected whole numbers"):
         read_frame(path)
 
 
@@ -157,7 +157,7 @@ def test_an_absent_channel_is_named_with_those_found(tmp_path: Path, channel: st
     planes = read_channels(path)
     del planes[channel]
     write_channels(path, planes)
-    with pytest.raises(SequenceError, match=rf"frame\.0000\.exr: expected channels .*{channel}.*, found .*") as error:
+    with pytest.raises(FileError, match=rf"frame\.0000\.exr: expected channels .*{channel}.*, found .*") as error:
         read_frame(path)
     assert all(name in str(error.value) for name in planes)
 
@@ -167,16 +167,16 @@ def test_a_frame_without_any_radiance_is_refused(tmp_path: Path) -> None:
     write_frame(path, plain_frame())
     planes = {name: plane for name, plane in read_channels(path).items() if name not in CHANNEL_NAMES["color"]}
     write_channels(path, planes)
-    with pytest.raises(SequenceError, match=r"frame\.0000\.exr: Frame\.color: expected an array.*channels found"):
+    with pytest.raises(FileError, match=r"frame\.0000\.exr: Frame\.color: expected an array.*channels found"):
         read_frame(path)
-    with pytest.raises(SequenceError, match="expected channels R G B, found"):
+    with pytest.raises(FileError, match="expected channels R G B, found"):
         read_picture(path)
 
 
 def test_frames_of_a_sequence_have_one_size(tmp_path: Path) -> None:
     write_frame(frame_path(tmp_path, 0), plain_frame(3, 4))
     write_frame(frame_path(tmp_path, 1), plain_frame(4, 4))
-    with pytest.raises(SequenceError, match=r"frame\.0001\.exr: expected 4x3 pixels as in .*0000\.exr, got 4x4"):
+    with pytest.raises(FileError, match=r"frame\.0001\.exr: expected 4x3 pixels as in .*0000\.exr, got 4x4"):
         list(read_sequence(find_frames([tmp_path])))
 
 
@@ -186,10 +186,10 @@ def test_frames_of_a_sequence_have_the_same_fields(tmp_path: Path) -> None:
     flat = replace(flat, motion=np.ascontiguousarray(flat.motion[..., :2]))
     write_frame(frame_path(tmp_path, 0), flat)
     write_frame(frame_path(tmp_path, 1), replace(flat, albedo=None, emission=radiance))
-    with pytest.raises(SequenceError, match=r"1\.exr: expected .*0000\.exr, got a frame without albedo, with emission"):
+    with pytest.raises(FileError, match=r"1\.exr: expected .*0000\.exr, got a frame without albedo, with emission"):
         list(read_sequence(find_frames([tmp_path])))
     write_frame(frame_path(tmp_path, 1), plain_frame(albedo=radiance))
-    with pytest.raises(SequenceError, match=r"0001\.exr: .* got a frame with motion\.Z"):
+    with pytest.raises(FileError, match=r"0001\.exr: .* got a frame with motion\.Z"):
         list(read_sequence(find_frames([tmp_path])))
 
 
@@ -197,7 +197,7 @@ def test_frames_of_a_sequence_have_the_same_fields(tmp_path: Path) -> None:
 def test_a_field_of_nothing_but_nan_is_refused(tmp_path: Path, field: str) -> None:
     frame = plain_frame()
     write_frame(frame_path(tmp_path, 0), plain_frame(**{field: np.full_like(getattr(frame, field), np.nan)}))
-    with pytest.raises(SequenceError, match=rf"0000\.exr: expected finite values in {field}"):
+    with pytest.raises(FileError, match=rf"0000\.exr: expected finite values in {field}"):
         list(read_sequence(find_frames([tmp_path])))
 
 
@@ -237,5 +237,5 @@ def test_a_picture_is_known_bit_by_bit(tmp_path: Path) -> None:
 
 
 def test_a_folder_behind_a_closed_door_is_named(tmp_path: Path) -> None:
-    with unprivileged(tmp_path), pytest.raises(SequenceError, match="cannot be read \\(Permission denied\\)"):
+    with unprivileged(tmp_path), pytest.raises(FileError, match="cannot be read \\(Permission denied\\)"):
         find_frames([tmp_path])

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from svgf_cl.frame import Frame
-from tracer import BUILTIN, Scene, SceneError, Shot, builtin_scene, render_frame
+from svgf_cl_tracer import BUILTIN, Scene, SceneError, Shot, builtin_scene, render_frame
 
 SHAPE = (36, 64)
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.builtin.foliage import SIDE, foliage, twigs
+from svgf_cl_tracer.builtin.foliage import SIDE, foliage, twigs
 
 
 def test_cards_are_squares_within_their_ellipsoid() -> None:

@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from tracer.builtin import patterns
-from tracer.textures import Image
+from svgf_cl_tracer.builtin import patterns
+from svgf_cl_tracer.textures import Image
 
 DARK, LIGHT, JOINT = (40, 50, 60), (200, 180, 160), (120, 120, 120)
 

@@ -3,9 +3,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tracer.builtin import shapes
-from tracer.geometry import Instance
-from tracer.materials import Material
+from svgf_cl_tracer.builtin import shapes
+from svgf_cl_tracer.geometry import Instance
+from svgf_cl_tracer.materials import Material
 
 MATT = Material()
 

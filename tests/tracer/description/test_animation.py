@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter
 
-from tracer import SceneError
-from tracer.description.animation import AnyAnimation
+from svgf_cl_tracer import SceneError
+from svgf_cl_tracer.description.animation import AnyAnimation
 
 
 def moved(time: float, point: tuple[float, float, float], **fields: Any) -> np.ndarray:

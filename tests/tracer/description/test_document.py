@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tracer import SceneError
-from tracer.description import SceneDescription, document, read_description
+from svgf_cl_tracer import SceneError
+from svgf_cl_tracer.description import SceneDescription, document, read_description
 
 SHARED = Path(__file__).parents[4] / "shared" / "scenes"
 SCENES = sorted(SHARED.glob("*/scene.json"))

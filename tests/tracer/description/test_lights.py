@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.description.lights import Rectangle, SunLight
+from svgf_cl_tracer.description.lights import Rectangle, SunLight
 
 
 def test_a_rectangle_shines_to_the_side_of_u_x_v() -> None:

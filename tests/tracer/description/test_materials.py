@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter
 
-from tracer import SceneError
-from tracer.description.materials import AnyMaterial
-from tracer.materials import Material
+from svgf_cl_tracer import SceneError
+from svgf_cl_tracer.description.materials import AnyMaterial
+from svgf_cl_tracer.materials import Material
 
 TEXTURE = np.zeros((2, 2, 4), np.uint8)
 MODEL = Material((0.1, 0.2, 0.3), (1, 1, 1), TEXTURE, metallic=0.5, roughness=0.5, ior=1.5, alpha_cutoff=0.3)

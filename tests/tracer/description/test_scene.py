@@ -9,10 +9,10 @@ import numpy as np
 import OpenImageIO as oiio  # noqa: N813
 import pytest
 
+from svgf_cl_tracer import Environment, Scene, SceneError
+from svgf_cl_tracer.description import described_scene
+from svgf_cl_tracer.lights import Sun
 from tests.tracer.gltf_files import CORNERS, Buffers, write_gltf
-from tracer import Environment, Scene, SceneError
-from tracer.description import described_scene
-from tracer.lights import Sun
 
 Describe = Callable[..., Scene]
 

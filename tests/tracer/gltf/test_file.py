@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from svgf_cl_tracer import SceneError
+from svgf_cl_tracer.gltf.file import Gltf
 from tests.tracer.gltf_files import CORNERS, Buffers, document, glb, write_gltf
-from tracer import SceneError
-from tracer.gltf.file import Gltf
 
 
 def test_text_and_binary_files_hold_the_same(tmp_path: Path) -> None:

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from svgf_cl_tracer import SceneError, load_scene
+from svgf_cl_tracer.gltf import model
+from svgf_cl_tracer.gltf.file import Gltf
 from tests.tracer.gltf_files import Buffers, document, png, uri, write_gltf
-from tracer import SceneError, load_scene
-from tracer.gltf import model
-from tracer.gltf.file import Gltf
 
 SKY = (1.0, 1.0, 1.0)
 TEXTURED = {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}

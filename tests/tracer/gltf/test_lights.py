@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from svgf_cl_tracer.gltf.file import Gltf
+from svgf_cl_tracer.gltf.lights import read_camera, read_lights
+from svgf_cl_tracer.gltf.nodes import Nodes
+from svgf_cl_tracer.lights import PointLight, Sun
 from tests.tracer.gltf_files import Buffers, write_gltf
-from tracer.gltf.file import Gltf
-from tracer.gltf.lights import read_camera, read_lights
-from tracer.gltf.nodes import Nodes
-from tracer.lights import PointLight, Sun
 
 # A quarter turn about x: -z becomes +y, -y.
 UP, DOWN = (np.sqrt(0.5), 0, 0, np.sqrt(0.5)), (-np.sqrt(0.5), 0, 0, np.sqrt(0.5))

@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from svgf_cl_tracer import SceneError
+from svgf_cl_tracer.gltf.file import Gltf
+from svgf_cl_tracer.gltf.materials import Materials
+from svgf_cl_tracer.materials import Material
 from tests.tracer.gltf_files import png, uri, write_gltf
-from tracer import SceneError
-from tracer.gltf.file import Gltf
-from tracer.gltf.materials import Materials
-from tracer.materials import Material
 
 RGBA = np.array([[(255, 0, 0, 255), (0, 255, 0, 0)], [(0, 0, 255, 128), (255, 255, 255, 255)]], np.uint8)
 TEXTURE = {"baseColorTexture": {"index": 0}}

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
+from svgf_cl_tracer.gltf import load_gltf
 from tests.tracer.gltf_files import CORNERS, Buffers, write_gltf
-from tracer.gltf import load_gltf
 
 FACES = [[0, 1, 2], [0, 2, 3]]
 

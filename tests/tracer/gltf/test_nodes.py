@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from svgf_cl_tracer import SceneError
+from svgf_cl_tracer.gltf.file import Gltf
+from svgf_cl_tracer.gltf.nodes import Nodes
+from svgf_cl_tracer.motion import Keyframes
 from tests.tracer.gltf_files import Buffers, write_gltf
-from tracer import SceneError
-from tracer.gltf.file import Gltf
-from tracer.gltf.nodes import Nodes
-from tracer.motion import Keyframes
 
 QUARTER_ABOUT_Z = (0, 0, np.sqrt(0.5), np.sqrt(0.5))
 

@@ -1,0 +1,155 @@
+"""Every kernel against the float64 oracle, on every OpenCL implementation: printed, and written to a file if given.
+
+python -m benchmarks.accuracy_page [FILE]
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks import steady_light
+from benchmarks.implementations import Environment, environments
+from svgf_cl import Frame, Settings
+from svgf_cl.bench import error_to_oracle
+from svgf_cl.device import devices
+from svgf_cl.io.atomic import written_whole
+from svgf_cl.oracle.accuracy import DECISION, SCALE_SHARE, Deviation, deviations, worst
+from svgf_cl_tracer import Shot, builtin_scene, render_sequence
+
+SHAPE = (36, 64)
+FRAMES = 4
+PIPELINE_FRAMES = 3
+COLUMNS = ("absolute", "relative", "ulps", "decided_otherwise")
+HERE = "--here"
+
+INTRODUCTION = f"""# Accuracy
+
+Made by `make docs` (`python -m benchmarks.accuracy_page docs/accuracy.md`); do not edit. `make test-all` prints it for
+the machine it runs on.
+
+Every kernel is given its actual float32 input and held against the same function of `svgf_cl/oracle/svgf.py` in
+float64, on {FRAMES} frames of {SHAPE[1]}x{SHAPE[0]} each of two sequences: the built-in Cornell box (1 sample, moving
+camera), and unrelated numbers in every field, with misses, ids and motion of several pixels. Direct and indirect light
+apart, TAA on. The largest error of any pixel of any result of a kernel:
+
+- absolute: in the result's own unit (radiance, its square for a variance, or 1);
+- relative: `|got - expected| / (|expected| + {SCALE_SHARE:g} * mean |expected|)`; of a colour the greatest channel
+  counts as its size;
+- ulps: the absolute error in units in the last place of that denominator, as float32.
+
+Where rounding tips a decision (a tap just accepted or just refused) a pixel may be off by more than {DECISION:g},
+relative; such pixels are left out, and their share is in the last column.
+
+Why not zero: float32 rounds by half an ULP, 6e-8. 128 times a cosine multiplies that by 128, an exponent of up to 80 by
+as much again, and the polynomial exponential adds 4e-6; the variance sums squares of differences.
+"""
+
+WHOLE_FILTER = f"""
+The whole filter over a sequence ({PIPELINE_FRAMES} frames of the closed-form room, 160x90), errors building up through
+the history, relative to the picture's mean:
+"""
+
+
+def random_frames(shape: tuple[int, int], count: int, seed: int = 1) -> Iterator[Frame]:
+    """Frames that no renderer would make: nothing fits anything else."""
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        direct, indirect, emission = (rng.exponential(1.0, (*shape, 3)).astype(np.float32) for _ in range(3))
+        normal = rng.normal((0.0, 0.0, 1.0), 0.05, (*shape, 3))
+        depth = 5.0 + 0.05 * rng.random(shape) + 3.0 * (np.arange(shape[1]) // 7 % 2)
+        yield Frame(
+            direct=direct,
+            indirect=indirect,
+            emission=emission * (rng.random((*shape, 1)) < 0.1),
+            albedo=rng.random((*shape, 3), np.float32),
+            normal=normal.astype(np.float32),
+            depth=np.where(rng.random(shape) < 0.05, np.inf, depth).astype(np.float32),
+            motion=rng.normal(0.0, (2.0, 2.0, 0.05), (*shape, 3)).astype(np.float32),
+            id=rng.integers(1, 3, shape, np.uint32),
+        )
+
+
+def measured() -> dict[str, Any]:
+    """The figures of this process's default device."""
+    queue = devices.default_queue()
+    traced = render_sequence(Shot(builtin_scene("cornell"), SHAPE, FRAMES))
+    kernels: dict[str, list[Deviation]] = {}
+    for frames in (traced, random_frames(SHAPE, FRAMES)):
+        for deviation in deviations(frames, Settings(taa=True), queue).values():
+            kernels.setdefault(deviation.kernel, []).append(deviation)
+    largest, rms = error_to_oracle(Settings(), frames=PIPELINE_FRAMES, queue=queue)
+    return {
+        "device": f"{queue.device.name}, {queue.device.platform.version.strip()}, driver {queue.device.driver_version}",
+        "kernels": {name: asdict(worst(stages)) for name, stages in kernels.items()},
+        "largest": largest,
+        "rms": rms,
+    }
+
+
+def measured_apart(environment: Environment) -> dict[str, Any]:
+    """`measured` of a process in another environment."""
+    command = [sys.executable, "-m", "benchmarks.accuracy_page", HERE]
+    child = subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=True)
+    figures: dict[str, Any] = json.loads(child.stdout.splitlines()[-1])
+    return figures
+
+
+def table(*rows: tuple[str, ...]) -> str:
+    """A markdown table; the first row is its head."""
+    head, *body = (f"| {' | '.join(row)} |" for row in rows)
+    return "\n".join([head, "|---" * len(rows[0]) + "|", *body])
+
+
+def page(found: dict[str, dict[str, Any]]) -> str:
+    """The page on these implementations, by name."""
+    kernels = next(iter(found.values()))["kernels"]
+    errors = [
+        (kernel, name, *(f"{figures['kernels'][kernel][column]:.1e}" for column in COLUMNS))
+        for kernel in kernels
+        for name, figures in found.items()
+    ]
+    whole = [
+        (name, f"{figures['rms']:.1e}", f"{figures['largest']:.1e}", figures["device"])
+        for name, figures in found.items()
+    ]
+    return "\n".join(
+        [
+            INTRODUCTION,
+            table(("kernel", "implementation", *(column.replace("_", " ") for column in COLUMNS)), *errors),
+            WHOLE_FILTER,
+            table(("implementation", "rms", "largest", "device"), *whole),
+            "",
+            steady_light.INTRODUCTION,
+            steady_light.table(),
+            "",
+        ]
+    )
+
+
+def main() -> None:
+    """Measure, here or on every implementation."""
+    if sys.argv[1:] == [HERE]:
+        print(json.dumps(measured()))
+        return
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor() as pool:
+        processes = environments(Path(folder))
+        found = dict(zip(processes, pool.map(measured_apart, processes.values()), strict=True))
+    text = page(found)
+    print(text)
+    for target in map(Path, sys.argv[1:]):
+        with written_whole(target) as aside:
+            aside.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,122 @@
+"""Everything that is measured of the tracer on one scene, as the benchmark's results."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from benchmarks.tracing.fresh import STARTS, Fresh, starts
+from benchmarks.tracing.noise import noise
+from benchmarks.tracing.recording import KINDS, THREADS, Recording, record
+from benchmarks.tracing.rounds import CPU, EMBREE, FRAME, embree, sample_round
+from benchmarks.tracing.split import split
+from svgf_cl.bench.results import Result
+from svgf_cl.bench.rig import HOST
+from svgf_cl.bench.suite import ProgressBar
+from svgf_cl.frame import Shape, extent
+from svgf_cl_tracer import Shot, render_frame
+from svgf_cl_tracer.cli.scenes import open_scene
+from svgf_cl_tracer.references import chunks
+
+# The frame that is timed: in the middle of a sequence, where the camera moves.
+FRAMES, NUMBER = 24, 12
+
+REFERENCE_SPP = 64
+
+# Of the frame whose memory is measured.
+MEMORY_SHAPE: Shape = (1080, 1920)
+
+# Seconds of each round, by what was timed, on how many threads, and the clock.
+Samples = dict[tuple[str, int, str], list[float]]
+
+
+def measure(scene: str, shape: Shape, rounds: int, progress_bar: ProgressBar) -> tuple[Result, ...]:
+    """Measure the tracer on a scene.
+
+    Parameters
+    ----------
+    scene : str
+        As `svgf_cl_tracer.cli.scenes.open_scene` takes it.
+    shape : (int, int)
+        Of the frames that are timed.
+    rounds : int
+        >= 1.
+    progress_bar : callable
+        As in `svgf_cl.bench.suite.Suite.run`.
+
+    Returns
+    -------
+    tuple of Result
+        Of the device "tracer: " and the scene's name.
+
+    Raises
+    ------
+    SvgfError
+        Where the scene cannot be used.
+    """
+    shot = Shot(open_scene(scene, None), shape, FRAMES)
+    device = f"tracer: {Path(scene).stem}"
+    with progress_bar("new processes", STARTS) as advance:
+        started = starts(scene, MEMORY_SHAPE, advance)
+    with progress_bar("reference", chunks(REFERENCE_SPP)) as advance:
+        error = noise(shot, NUMBER, REFERENCE_SPP, advance)
+    render_frame(shot, NUMBER)
+    recording = record(shot, NUMBER)
+    with progress_bar("frames, and Embree by itself", rounds) as advance:
+        samples = sampled(shot, recording, rounds, advance)
+    facts = counts(recording) | {FRAME: error}
+    times = frame_results(device, shape, samples, facts)
+    return *times, *start_results(device, started)
+
+
+def sampled(shot: Shot, recording: Recording, rounds: int, advance: Callable[[], None]) -> Samples:
+    """Times of the frame, of its rays, and of all that its CPU time is spent on."""
+    split(shot, NUMBER, recording)  # compiles its loops
+    samples: Samples = defaultdict(list)
+    for _ in range(rounds):
+        for what, threads, clock, seconds in sample_round(shot, NUMBER, recording):
+            samples[what, threads, clock].append(seconds)
+        for part, seconds in split(shot, NUMBER, recording).items():
+            samples[f"split {part}", THREADS, CPU].append(seconds)
+        advance()
+    return samples
+
+
+def counts(recording: Recording) -> dict[str, dict[str, int]]:
+    """How many rays the tracer sent and how many it asked Embree for, by what is timed."""
+    found = {embree(kind): {"rays": recording.rays(kind), "asked": recording.asked[kind]} for kind in KINDS}
+    return found | {EMBREE: {name: sum(each[name] for each in found.values()) for name in ("rays", "asked")}}
+
+
+def frame_results(
+    device: str, shape: Shape, samples: Samples, facts: Mapping[str, Mapping[str, float]]
+) -> Iterator[Result]:
+    """The samples by name, with what `facts` has to say of each."""
+    for (what, threads, clock), seconds in samples.items():
+        variant = "" if threads == THREADS else f"threads{threads}"
+        yield result(device, shape, what, clock, seconds, variant=variant, threads=threads, **facts.get(what, {}))
+
+
+def start_results(device: str, found: Sequence[Fresh]) -> Iterator[Result]:
+    """From a scene's name to a first frame, and the memory that it takes."""
+    cold, *warm = found
+    times = {
+        "load": [each.load for each in found],
+        "trees": [each.trees for each in found],
+        "cold": [cold.first],
+        "warm": [each.first for each in warm],
+    }
+    memory = {name: max(getattr(each, name) for each in found) for name in ("libraries", "scene", "peak")}
+    for what, each in times.items():
+        yield result(device, MEMORY_SHAPE, f"start {what}", HOST, each, **memory)
+
+
+def result(
+    device: str, shape: Shape, what: str, clock: str, seconds: Sequence[float], *, variant: str = "", **facts: Any
+) -> Result:
+    """A result with its name."""
+    words = ["tracer", *what.lower().split(), variant, extent(shape)]
+    stage = {"stage": f"tracer {what}", "height": shape[0], "width": shape[1], "variant": variant}
+    return Result(".".join(filter(None, words)), device, clock, tuple(seconds), stage | facts)

@@ -1,0 +1,80 @@
+"""``svgf-cl demo``: the whole way from a scene to denoised pictures, with proof."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from svgf_cl.cli.console import progress_bar, show, show_times, tracked
+from svgf_cl.cli.options import MAX_FRAMES, Output, Size, parse_size
+from svgf_cl.compare.metrics import SSIM_WINDOW, Metrics, require_ssim
+from svgf_cl.denoiser import Denoiser
+from svgf_cl.errors import SvgfError
+from svgf_cl.io.atomic import make_folder
+from svgf_cl_tracer.cli.scenes import require_tracer
+
+
+def demo(
+    output: Output = Path("out/demo"),
+    frames: Annotated[int, typer.Option(metavar="N", min=1, max=MAX_FRAMES, help="Number of frames.")] = 24,
+    size: Size = "640x360",
+    reference_spp: Annotated[
+        int,
+        typer.Option(min=1, metavar="SPP", help="Samples per pixel of the references; most of the time goes here."),
+    ] = 256,
+) -> None:
+    """Render the built-in scene, denoise it and show what was gained.
+
+    Renders a moving camera at 1 sample per pixel, denoises each frame as it comes, renders references of a few
+    frames, and writes the sequences (EXR), stills side by side (PNG) and an animated preview (WebP).
+
+    \b
+    Examples:
+      svgf-cl demo
+      svgf-cl demo --frames 8 --size 320x180 --reference-spp 64 -o out/quick
+    """
+    require_tracer()
+    require_ssim()
+    from svgf_cl_tracer.demo import SETTINGS, Demo
+    from svgf_cl_tracer.references import chunks
+
+    shape = parse_size(size)
+    if min(shape) < SSIM_WINDOW:
+        raise SvgfError(f"--size: expected at least {SSIM_WINDOW}x{SSIM_WINDOW} pixels, which SSIM needs, got {size}")
+    run = Demo(make_folder(output), frames, shape, reference_spp)
+    run.check_leftovers()
+    denoiser = Denoiser(run.shape, settings=SETTINGS)
+    print(f"device: {denoiser.queue.device.name.strip()} ({denoiser.queue.device.platform.name})")
+    profiles = list(tracked(run.denoise(denoiser), frames, "rendering and denoising"))
+    with progress_bar("references", total=len(run.compared) * chunks(reference_spp)) as advance:
+        run.render_references(advance)
+    run.write_stills()
+    run.write_preview()
+    show_gain(*(run.measure(kind) for kind in ("noisy", "filtered", "denoised")))
+    show_times(profiles)
+    show_files(
+        output,
+        ["preview.webp", *(f"still.{n:04d}.png" for n in run.compared), "noisy", "filtered", "denoised", "reference"],
+    )
+
+
+def show_gain(noisy: Mapping[int, Metrics], svgf: Mapping[int, Metrics], antialiased: Mapping[int, Metrics]) -> None:
+    """Print how far the pictures of each stage are from the reference, one row a frame."""
+    rows = []
+    for number, before in noisy.items():
+        stages = (before, svgf[number], antialiased[number])
+        psnr = [f"{stage.psnr:.2f}" for stage in stages]
+        ssim = [f"{stage.ssim:.3f}" for stage in stages]
+        rows.append((str(number), *psnr, f"{stages[-1].psnr - before.psnr:+.2f}", *ssim))
+    columns = ("\nframe", "noisy\ndB", "SVGF\ndB", "+TAA\ndB", "gain\ndB", "noisy\nSSIM", "SVGF\nSSIM", "+TAA\nSSIM")
+    show("against the reference", columns, rows)
+
+
+def show_files(folder: Path, names: Iterable[str]) -> None:
+    """Print where the results are, the ones to look at first."""
+    print("files:")
+    for name in names:
+        print(f"  {folder / name}")

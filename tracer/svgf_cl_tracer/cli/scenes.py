@@ -1,0 +1,68 @@
+"""The tracer is optional: finding it, and opening a scene with it."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from svgf_cl.cli.options import parse_rgb
+from svgf_cl.errors import SvgfError
+
+if TYPE_CHECKING:
+    from svgf_cl_tracer import Environment, Scene
+
+
+def require_tracer() -> None:
+    """Raise `SvgfError`, with the command that installs it, where the tracer or something it needs is missing."""
+    # trimesh swallows KeyboardInterrupt while it is being imported: until then Ctrl-C ends the process by itself.
+    interrupt = signal.signal(signal.SIGINT, signal.SIG_DFL)
+    try:
+        import svgf_cl_tracer.api  # noqa: F401
+    except ModuleNotFoundError as error:
+        raise SvgfError(
+            f"rendering needs the tracer ({error}): pip install '.[tracer]' in a clone of svgf_cl"
+        ) from error
+    finally:
+        signal.signal(signal.SIGINT, interrupt)
+    from svgf_cl_tracer.compiled import was_compiled
+
+    if not was_compiled():
+        print("compiling the tracer: some twenty seconds, this once", flush=True)
+
+
+def read_sky(text: str) -> tuple[float, float, float] | Environment:
+    """Read what ``--sky`` says: three radiances, or the image in a file.
+
+    Raises
+    ------
+    SvgfError
+        Where it is neither, or the image cannot be used.
+    """
+    import svgf_cl_tracer
+
+    return svgf_cl_tracer.load_environment(text) if Path(text).suffix.lower() in (".hdr", ".exr") else parse_rgb(text)
+
+
+def open_scene(
+    name: str, sky: tuple[float, float, float] | Environment | None, *, alternative_lights: bool = False
+) -> Scene:
+    """Open the scene in file or folder `name`, or make the built-in one of that name.
+
+    Raises
+    ------
+    SvgfError
+        Where there is neither, where the file cannot be used, or where a built-in scene is given other lights.
+    """
+    import svgf_cl_tracer
+
+    if name in svgf_cl_tracer.BUILTIN:
+        if sky or alternative_lights:
+            raise SvgfError(
+                f"{name}: expected a file or folder to light otherwise, got a built-in scene with its own lamps"
+            )
+        return svgf_cl_tracer.builtin_scene(name)
+    if not Path(name).exists():
+        known = ", ".join(svgf_cl_tracer.BUILTIN)
+        raise SvgfError(f"{name}: expected a scene's folder or file or a built-in scene ({known}), found nothing")
+    return svgf_cl_tracer.load_scene(name, sky, alternative_lights=alternative_lights)

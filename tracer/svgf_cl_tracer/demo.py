@@ -1,0 +1,147 @@
+"""The demo: the built-in scene rendered at 1 sample per pixel, denoised as it comes, and held against references.
+
+Every step leaves its result in files and the next one reads them there; what a run that was broken off has left is kept
+where it is what this one would write::
+
+    noisy/frame.0000.exr ...        what the tracer rendered, with its G-buffer
+    filtered/frame.0000.exr ...     SVGF alone
+    denoised/frame.0000.exr ...     after temporal antialiasing too, as in the paper
+    reference/reference.0000.exr    of the compared frames only: they cost the most
+    still.0000.png                  the compared frames side by side, with the piece that differs most
+    preview.webp                    noisy and denoised, animated
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+import svgf_cl_tracer
+from svgf_cl.compare.metrics import Metrics, measure
+from svgf_cl.denoiser import Denoiser
+from svgf_cl.filters import Settings
+from svgf_cl.frame import Frame, Shape
+from svgf_cl.io.atomic import make_folder
+from svgf_cl.io.display import Bytes, to_bytes, write_image
+from svgf_cl.io.frames import (
+    check_leftovers,
+    frame_path,
+    is_picture,
+    kept_frame,
+    read_picture,
+    write_frame,
+    write_picture,
+)
+from svgf_cl.io.panels import still, write_preview
+from svgf_cl_tracer.references import CHUNK, chunks
+
+# From here on the history is long enough for the filter to be judged by.
+WARM = 8
+# Rays go through another point of the pixel in every frame; antialiasing makes smooth edges of that.
+SETTINGS = Settings(taa=True)
+
+
+@dataclass(frozen=True)
+class Demo:
+    """One run of the demo; call the steps from top to bottom.
+
+    Parameters
+    ----------
+    folder : Path
+        Where everything goes.
+    frames : int
+        Length of the sequence, >= 1.
+    shape : (int, int)
+        (height, width) in pixels.
+    reference_spp : int
+        Samples per pixel of a reference, >= 1; rounded up to whole chunks.
+    """
+
+    folder: Path
+    frames: int
+    shape: Shape
+    reference_spp: int
+
+    @cached_property
+    def shot(self) -> svgf_cl_tracer.Shot:
+        """The built-in scene, seen along its own camera path."""
+        return svgf_cl_tracer.Shot(svgf_cl_tracer.builtin_scene(), self.shape, self.frames)
+
+    @property
+    def compared(self) -> list[int]:
+        """Frames that are held against a reference: the first, one at the end of the warm-up, and two after it."""
+        last = self.frames - 1
+        warm = min(WARM, last)
+        return sorted({0, warm, (warm + last) // 2, last})
+
+    def path(self, kind: str, number: int) -> Path:
+        """Name the file of a ``noisy``, ``filtered``, ``denoised`` or ``reference`` frame."""
+        return frame_path(self.folder / kind, number, "reference" if kind == "reference" else "frame")
+
+    def still_path(self, number: int) -> Path:
+        """Name the file that shows a compared frame."""
+        return self.folder / f"still.{number:04d}.png"
+
+    def check_leftovers(self) -> None:
+        """Raise `FileError` where the folder holds frames of an earlier run that this one would not replace."""
+        for kind in ("noisy", "filtered", "denoised"):
+            check_leftovers(self.folder / kind, [self.path(kind, number) for number in range(self.frames)])
+        check_leftovers(self.folder / "reference", [self.path("reference", number) for number in self.compared])
+        check_leftovers(self.folder, [self.still_path(number) for number in self.compared])
+
+    def denoise(self, denoiser: Denoiser) -> Iterator[dict[str, float]]:
+        """Render, denoise and write one frame after the other; yield the milliseconds of each pass."""
+        for kind in ("noisy", "filtered", "denoised"):
+            make_folder(self.folder / kind)
+        for number in range(self.frames):
+            pictures = {"denoised": denoiser.denoise(self._noisy(number)), "filtered": denoiser.stage("modulated")}
+            for kind, picture in pictures.items():
+                if not is_picture(self.path(kind, number), picture):
+                    write_picture(self.path(kind, number), picture)
+            yield denoiser.profile()
+
+    def _noisy(self, number: int) -> Frame:
+        """The frame that an earlier run has rendered; where there is none, it is rendered and written now."""
+        path, made_from = self.path("noisy", number), svgf_cl_tracer.frame_identity(self.shot, number)
+        frame = kept_frame(path, made_from)
+        if frame is None:
+            frame = svgf_cl_tracer.render_frame(self.shot, number)
+            write_frame(path, frame, made_from)
+        return frame
+
+    def render_references(self, advance: Callable[[], None]) -> None:
+        """Render the references of the compared frames; `advance` is called `chunks` times for each of them."""
+        make_folder(self.folder / "reference")
+        references = svgf_cl_tracer.References(self.shot)
+        for number in self.compared:
+            estimate = references.render(number, self.reference_spp, advance)
+            references.write(self.path("reference", number), number, estimate)
+
+    def measure(self, kind: str) -> dict[int, Metrics]:
+        """Measure the compared frames of one kind against the reference, by number."""
+        return {
+            number: measure(read_picture(self.path(kind, number)), read_picture(self.path("reference", number)))
+            for number in self.compared
+        }
+
+    def write_stills(self) -> None:
+        """Write the compared frames side by side as PNG."""
+        for number in self.compared:
+            labels = {
+                "noisy": "noisy, 1 spp",
+                "denoised": "denoised" if number else "denoised, first frame: no history",
+                "reference": f"reference, {CHUNK * chunks(self.reference_spp)} spp",
+            }
+            panels = {label: to_bytes(read_picture(self.path(kind, number))) for kind, label in labels.items()}
+            write_image(self.still_path(number), still(panels))
+
+    def write_preview(self) -> None:
+        """Write the whole sequence as an animation, noisy beside denoised."""
+        write_preview(self.folder / "preview.webp", (self._pair(number) for number in range(self.frames)))
+
+    def _pair(self, number: int) -> Bytes:
+        return np.hstack([to_bytes(read_picture(self.path(kind, number))) for kind in ("noisy", "denoised")])

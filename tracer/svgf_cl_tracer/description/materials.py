@@ -1,0 +1,113 @@
+"""The materials of a description, after the types of Mitsuba's: each is told in full, but for the model's texture."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from svgf_cl_tracer.errors import SceneError
+from svgf_cl_tracer.materials import Material
+
+from .values import Index, Part, Radiance, Reflectance, Share
+
+# Opacity below which there is a hole where the model does not say.
+CUTOFF = 0.5
+
+Zero = Annotated[float, Field(ge=0, le=0)]
+One = Annotated[float, Field(ge=1, le=1)]
+
+
+class Surface(Part):
+    """What all materials have."""
+
+    color: Reflectance = Field(
+        (1.0, 1.0, 1.0), description="Reflectance, of glass transmittance; a base texture is multiplied by it."
+    )
+    base_texture: bool = Field(False, description="Whether the model's base colour texture is used.")
+    mask: bool = Field(
+        False, description="Whether there are holes where the texture's alpha is below the model's cutoff."
+    )
+    twosided: bool = Field(True, description="For information: all that is not glass reflects on both sides.")
+    radiance: Radiance | None = Field(None, description="For information: what an area light of this material emits.")
+
+    def on(self, model: Material) -> Material:
+        """The material that this makes of the model's.
+
+        Raises
+        ------
+        SceneError
+            The model's has no texture, or one without alpha, where it is wanted.
+        """
+        if self.base_texture and model.base_texture is None:
+            raise SceneError("base_texture: expected a texture in the model, found none")
+        if self.mask and not (self.base_texture and model.base_texture is not None):
+            raise SceneError("mask: expected a base_texture whose alpha is the mask, found none")
+        return Material(
+            self.color,
+            base_texture=model.base_texture if self.base_texture else None,
+            alpha_cutoff=(model.alpha_cutoff or CUTOFF) if self.mask else None,
+        )
+
+
+class Diffuse(Surface, title="diffuse"):
+    """A surface that scatters alike to all sides (Lambert)."""
+
+    type: Literal["diffuse"]
+    roughness: One = Field(1.0, description="For information.")
+    metallic: Zero = Field(0.0, description="For information.")
+
+
+class Glossy(Surface):
+    """What is common to plastic and conductor."""
+
+    roughness: Share = Field(description="Perceptual roughness: the square root of the GGX width.")
+    alpha: Share | None = Field(None, description="For information: the GGX width.")
+
+    @model_validator(mode="after")
+    def _agree(self) -> Glossy:
+        if self.alpha is not None and abs(self.alpha - self.roughness**2) > 1e-3:
+            raise ValueError(f"expected as alpha the square of the roughness {self.roughness}, found {self.alpha}")
+        return self
+
+
+class Plastic(Glossy, title="plastic"):
+    """A diffuse surface under a dielectric coat."""
+
+    type: Literal["plastic"]
+    ior: Index = Field(1.5, description="Refractive index of the coat.")
+    metallic: Zero = Field(0.0, description="For information.")
+
+    def on(self, model: Material) -> Material:
+        """See `Surface.on`."""
+        return replace(super().on(model), roughness=self.roughness, ior=self.ior)
+
+
+class Conductor(Glossy, title="conductor"):
+    """A metal."""
+
+    type: Literal["conductor"]
+    metallic: One = Field(1.0, description="For information.")
+
+    def on(self, model: Material) -> Material:
+        """See `Surface.on`."""
+        return replace(super().on(model), roughness=self.roughness, metallic=1.0)
+
+
+class Dielectric(Surface, title="dielectric"):
+    """Smooth glass, whose inside is where the surface's back is."""
+
+    type: Literal["dielectric"]
+    ior: Index = Field(1.5, description="Refractive index.")
+    roughness: Zero = Field(0.0, description="For information.")
+    alpha: Zero = Field(0.0, description="For information.")
+    metallic: Zero = Field(0.0, description="For information.")
+    thin: Literal[False] = Field(False, description="For information.")
+
+    def on(self, model: Material) -> Material:
+        """See `Surface.on`."""
+        return replace(super().on(model), roughness=0.0, ior=self.ior, transmissive=True)
+
+
+AnyMaterial = Annotated[Diffuse | Plastic | Conductor | Dielectric, Field(discriminator="type")]

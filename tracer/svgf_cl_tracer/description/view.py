@@ -1,0 +1,30 @@
+"""The camera of a description."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from svgf_cl_tracer.camera import Camera
+
+from .values import Direction, NonNegative, Part, Position, Share, unit
+
+
+class View(Part, title="Camera"):
+    """A camera."""
+
+    position: Position = Field(description="The eye.")
+    look_at: Position = Field(description="A point in the middle of the picture, and in focus.")
+    up: Direction = Field((0.0, 1.0, 0.0), description="What is up in the picture.")
+    fov_y_deg: Annotated[float, Field(gt=0, lt=180), unit("degrees")] = Field(
+        45.0, description="Vertical field of view."
+    )
+    aperture: Annotated[NonNegative, unit("m")] = Field(0.0, description="Diameter of the lens; at 0 all is sharp.")
+    shutter: Share = Field(0.0, description="How long the shutter is open, as a share of the time between two frames.")
+    source_width: int = Field(0, ge=0, description="For information: of the picture that the scene's author made.")
+    source_height: int = Field(0, ge=0, description="For information: of the picture that the scene's author made.")
+
+    def camera(self) -> Camera:
+        """The tracer's own."""
+        return Camera(self.position, self.look_at, self.up, self.fov_y_deg, self.aperture, self.shutter)

@@ -1,0 +1,63 @@
+"""Lights (KHR_lights_punctual) and cameras of a file, each where its node is.
+
+The extension's candela and lux stay as they are, as do the nits of KHR_materials_emissive_strength: radiance is in nits
+then.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from svgf_cl_tracer.camera import Camera, vector
+from svgf_cl_tracer.lights import PointLight, Sun
+from svgf_cl_tracer.meshes import colour, is_moving
+from svgf_cl_tracer.model import Light
+from svgf_cl_tracer.motion import Motion
+
+from .file import Gltf, entry
+from .nodes import Nodes
+
+EXTENSION = "KHR_lights_punctual"
+
+
+def read_lights(gltf: Gltf, nodes: Nodes) -> Iterator[Light]:
+    """The lights of the scene's nodes; a directional one keeps the direction it has at the start."""
+    known = gltf.document.get("extensions", {}).get(EXTENSION, {}).get("lights", [])
+    for chain in nodes.chains():
+        extension = nodes.node(chain).get("extensions", {}).get(EXTENSION)
+        if extension:
+            yield Light(_light(entry(known, "lights", extension["light"]), nodes.motion(chain)), nodes.names(chain))
+
+
+def _light(document: dict[str, Any], motion: Motion) -> PointLight | Sun:
+    strength = colour(np.array(document.get("color", (1.0, 1.0, 1.0))) * document.get("intensity", 1.0))
+    matrix = motion.matrix(0.0)
+    if document["type"] == "directional":
+        return Sun(vector(matrix[:3, 2]), strength, angular_radius=0.0)
+    inner, outer = 180.0, 180.0
+    if document["type"] == "spot":
+        cone = document.get("spot", {})
+        inner = math.degrees(cone.get("innerConeAngle", 0.0))
+        outer = math.degrees(cone.get("outerConeAngle", math.pi / 4.0))
+    reach = document.get("range", math.inf)
+    light = PointLight((0.0, 0.0, 0.0), strength, (0.0, 0.0, -1.0), inner, outer, reach, motion)
+    if is_moving(motion):
+        return light
+    position, direction = light.placed(0.0)
+    return replace(light, position=vector(position), direction=vector(direction), motion=None)
+
+
+def read_camera(gltf: Gltf, nodes: Nodes) -> Camera | None:
+    """The first perspective camera among the scene's nodes, as it stands at the start; None where there is none."""
+    for chain in nodes.chains():
+        node = nodes.node(chain)
+        lens = gltf.item("cameras", node["camera"]).get("perspective") if "camera" in node else None
+        if lens:
+            _, up, back, position = nodes.motion(chain).matrix(0.0)[:3].T
+            return Camera(vector(position), vector(position - back), vector(up), math.degrees(lens["yfov"]))
+    return None

@@ -1,0 +1,9 @@
+"""Types of the arrays that vectors and colours are stored in."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Float32 = NDArray[np.float32]
+Float64 = NDArray[np.float64]
