@@ -3,7 +3,7 @@
 from svgf_cl.check import check_frame, check_sequence
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.device.tuning import Tuning
-from svgf_cl.errors import DeviceError, FrameError, FileError, SettingsError, SvgfError
+from svgf_cl.errors import DeviceError, FileError, FrameError, SettingsError, SvgfError
 from svgf_cl.filters import Eaw, Settings
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Frame

@@ -16,9 +16,6 @@ LUMINANCE: tuple[float, float, float] = (0.2126, 0.7152, 0.0722)
 Shape = tuple[int, int]
 UserArray = np.ndarray | cl_array.Array
 
-# Luminance of linear Rec. 709 red, green and blue.
-LUMINANCE: tuple[float, float, float] = (0.2126, 0.7152, 0.0722)
-
 # Number of channels each field may have; 0 stands for a plain (H, W) array.
 CHANNELS: dict[str, tuple[int, ...]] = {
     "color": (3,),
