@@ -8,19 +8,20 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from svgf_cl import Denoiser, Settings
+from svgf_cl import Denoiser, Eaw, Settings
+from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.oracle import svgf, temporal
 from svgf_cl.oracle.accuracy import DECISION, SCALE_SHARE, Deviation, deviations, relative_error, worst
 from tests.frames import SPLIT, TINY, bumpy_sequence
 
 
-@pytest.mark.parametrize("taa", [False, True])
-def test_covers_every_stage_and_the_result(taa: bool) -> None:
+@pytest.mark.parametrize("chosen", [Settings(), Settings(taa=True), Eaw()], ids=["svgf", "svgf, taa", "eaw"])
+def test_covers_every_stage_and_the_result(chosen: Filter) -> None:
     frames = bumpy_sequence(SPLIT, count=2, shape=TINY)
-    den = Denoiser(TINY, settings=Settings(taa=taa))
+    den = Denoiser(TINY, settings=chosen)
     den.denoise(frames[0])
-    found = deviations(frames, Settings(taa=taa))
+    found = deviations(frames, chosen)
     assert set(found) == {*den.stages, "out"}
     assert {deviation.kernel for deviation in found.values()} == {
         entry.entry for entry in den.settings.pipeline(Inputs.of(frames[0])).passes
