@@ -14,7 +14,7 @@ import pyopencl.tools as cl_tools
 from hypothesis import strategies as st
 
 from svgf_cl import Frame
-from svgf_cl.filters.pipeline import Inputs
+from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import REQUIRED, Shape
 from tests import arrays
 from tests.frames import bumpy, only

@@ -10,9 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
-from svgf_cl import Denoiser, Settings, SvgfError
+from svgf_cl import Denoiser, SvgfError
+from svgf_cl.filters import FILTERS
+from svgf_cl.filters.filter import Filter
 from svgf_cl.frame import Shape
-from svgf_cl.settings import CHOICES, RANGES
+from svgf_cl.settings import Choice, Domain, Range, Value, domains
 from tests.frames import FULL, TINY
 from tests.fuzz import calls
 from tests.fuzz.effort import effort
@@ -55,25 +57,25 @@ def test_how_arrays_are_held_does_not_matter(
         assert_array_equal(out, other.denoise(calls.plain(held)))
 
 
-def numbers(name: str) -> st.SearchStrategy[float]:
-    """A setting's ends, and what lies between."""
-    low, high = RANGES[name]
-    if isinstance(getattr(Settings(), name), int):
-        return st.integers(int(low), int(high))
-    return st.sampled_from((low, high)) | st.floats(low, high)
+def values(domain: Domain) -> st.SearchStrategy[Value]:
+    """All that a setting may be; of a number its ends, and what lies between."""
+    if isinstance(domain, Choice):
+        return st.sampled_from(domain.words)
+    if isinstance(domain, Range):
+        low, high = domain.least, domain.greatest
+        return st.integers(int(low), int(high)) if domain.whole else st.sampled_from((low, high)) | st.floats(low, high)
+    return st.booleans()
 
 
-settings = st.builds(
-    Settings,
-    **{name: numbers(name) for name in RANGES},
-    **{name: st.sampled_from(choices) for name, choices in CHOICES.items()},
-    **{name: st.booleans() for name in ("taa", "half_guides", "half_history")},
-)
+def any_settings(of: type[Filter]) -> st.SearchStrategy[Filter]:
+    return st.builds(of, **{name: values(domain) for name, domain in domains(of).items()})
 
 
+@pytest.mark.parametrize("name", FILTERS)
 @effort(8)
-@given(chosen=settings, shape=calls.shapes, wild=st.booleans(), seed=calls.seeds)
-def test_any_settings_give_a_picture(chosen: Settings, shape: Shape, wild: bool, seed: int) -> None:
+@given(data=st.data(), shape=calls.shapes, wild=st.booleans(), seed=calls.seeds)
+def test_any_settings_give_a_picture(name: str, data: st.DataObject, shape: Shape, wild: bool, seed: int) -> None:
+    chosen = data.draw(any_settings(FILTERS[name]))
     den = Denoiser(shape, settings=chosen)
     for turn in range(3):
         assert_is_a_picture(den.denoise(calls.frame_of(seed + turn, shape, FULL, 3, wild=wild)), shape)

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 from svgf_cl import Denoiser, Settings, SettingsError, SvgfError, Tuning
 from svgf_cl.device.layout import Layout
+from svgf_cl.filters.signals import Inputs
 from tests.fuzz.effort import effort
 
 anything = st.one_of(
@@ -86,4 +87,5 @@ def is_right(name: str, value: Any) -> bool:
     if name != "shape":
         return value is None
     is_pair = isinstance(value, (tuple, list, bytes)) and len(value) == 2
-    return is_pair and min(value) >= 1 and Layout(*value).indexable
+    widest = Settings().pipeline(Inputs.every()).widest
+    return is_pair and min(value) >= 1 and Layout(*value).indexable(widest)

@@ -17,7 +17,7 @@ from numpy.testing import assert_allclose
 
 from svgf_cl import Denoiser, Frame
 from svgf_cl.frame import Shape
-from svgf_cl.oracle.svgf import LENGTH_MAX
+from svgf_cl.oracle.temporal import LENGTH_MAX
 from tests.frames import bumpy_sequence
 from tests.hard.variants import VARIANTS, Variant
 
@@ -158,8 +158,8 @@ def random_frames(variant: Variant, count: int) -> Iterator[Frame]:
 
 def assert_no_denormals(den: Denoiser) -> None:
     """Arithmetic on them takes many times as long. The planes as they are: `stage` works out green anew."""
-    for name in ("accumulated", "moments", "history", "level 2", "level 5"):
-        values = np.abs(den._plan.planes.read(name))
+    for name in ("accumulated", "history_length", "level_1", "level_2", "level_5"):  # with all that lies beside them
+        values = np.abs(den.raw_stage(name))
         assert not ((values > 0) & (values < LEAST_NORMAL)).any(), name
 
 

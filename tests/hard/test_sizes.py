@@ -10,7 +10,7 @@ from numpy.testing import assert_array_equal
 
 from svgf_cl import Frame, SvgfError
 from svgf_cl.frame import Shape
-from svgf_cl.oracle.svgf import Reference
+from svgf_cl.oracle.svgf import Oracle
 from tests.frames import PLAIN, SHAPE, bumpy_sequence
 from tests.hard.variants import VARIANTS, Variant
 
@@ -66,7 +66,7 @@ def test_8k_follows_the_oracle_in_its_corners_and_its_middle(name: str) -> None:
         den.denoise(frame, out=picture)
     for window in windows():
         small = cut_out(frame, window)
-        oracle = Reference((WINDOW, WINDOW), variant.settings)
+        oracle = Oracle((WINDOW, WINDOW), variant.settings)
         expected = [oracle.denoise(small) for _ in range(2)][-1]
         part = within_reach(window)
         off = variant.errors(picture[window][part], expected[part])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from svgf_cl.oracle.svgf import Reference
+from svgf_cl.oracle.svgf import Oracle
 from tests.hard.variants import Variant
 
 STEADY = 1e4
@@ -15,7 +15,7 @@ SHAPE = (12, 40)
 @pytest.mark.parametrize("noise", [1e-1, 1e-2, 1e-3, 1e-4])
 def test_deviation_of_steady_light_is_off_by_a_rounding_of_it(variant: Variant, noise: float) -> None:
     """The paper's raw moments are off by more than the deviation at a noise of 1e-4: docs/accuracy.md."""
-    den, oracle = variant.denoiser(SHAPE), Reference(SHAPE, variant.settings)
+    den, oracle = variant.denoiser(SHAPE), Oracle(SHAPE, variant.settings)
     rng = np.random.default_rng(0)
     for _ in range(12):
         frame = variant.wall(STEADY * (1 + noise * rng.standard_normal((*SHAPE, 1))), shape=SHAPE)

@@ -11,7 +11,7 @@ import numpy as np
 from svgf_cl import Denoiser, Frame, Settings
 from svgf_cl.frame import Shape
 from svgf_cl.oracle.accuracy import largest_channel
-from svgf_cl.oracle.svgf import Reference
+from svgf_cl.oracle.svgf import Oracle
 from tests.frames import FULL, SHAPE, SPLIT, only, wall
 
 # Share of pixels that may be further off: where a tap lies within rounding of a threshold, it counts for one alone.
@@ -72,7 +72,7 @@ class Variant:
 
     def expected(self, frames: Iterable[Frame], shape: Shape = SHAPE) -> Iterator[np.ndarray]:
         """What the oracle makes of each frame of a sequence."""
-        return map(Reference(shape, self.settings).denoise, frames)
+        return map(Oracle(shape, self.settings).denoise, frames)
 
     def assert_follows_oracle(self, frames: Iterable[Frame], shape: Shape = SHAPE, error: float | None = None) -> None:
         """Every pixel of every picture is finite and, but for a few, within `error` of the oracle's."""

@@ -89,6 +89,6 @@ def test_nothing_overflows(taa: bool) -> None:
 
 def test_nothing_is_seen_outside_the_image() -> None:
     _, den = feed(wall())
-    surface = den._plan.planes.read("guide").reshape(-1, Layout(*SHAPE).rows, Layout(*SHAPE).pitch)
+    surface = den.raw_stage("depth").reshape(-1, Layout(*SHAPE).rows, Layout(*SHAPE).pitch)
     surface[:, HALO : HALO + SHAPE[0], HALO : HALO + SHAPE[1]] = 0
     assert not surface.any()

@@ -11,7 +11,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from svgf_cl import Denoiser, Frame, Settings
-from svgf_cl.oracle.svgf import Reference
+from svgf_cl.oracle.svgf import Oracle
 from tests.denoising import feed
 from tests.frames import FULL, SPLIT, bumpy_sequence, traced_sequence, wall
 
@@ -39,7 +39,7 @@ BOUNDS = [
 )
 def test_error_to_the_oracle(choice: dict[str, Any], bound: float, frames: Callable[[], Sequence[Frame]]) -> None:
     sequence = frames()
-    den, oracle = Denoiser(sequence[0].shape, settings=Settings(**choice)), Reference(sequence[0].shape)
+    den, oracle = Denoiser(sequence[0].shape, settings=Settings(**choice)), Oracle(sequence[0].shape, Settings())
     squares = []
     for frame in sequence:
         expected = oracle.denoise(frame)

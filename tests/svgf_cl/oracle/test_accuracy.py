@@ -2,38 +2,43 @@
 
 from __future__ import annotations
 
+from types import ModuleType
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from svgf_cl import Denoiser, Settings
-from svgf_cl.filters.pipeline import Inputs, pipeline
-from svgf_cl.oracle import svgf as reference
+from svgf_cl import Denoiser, Eaw, Settings
+from svgf_cl.filters.filter import Filter
+from svgf_cl.filters.signals import Inputs
+from svgf_cl.oracle import svgf, temporal
 from svgf_cl.oracle.accuracy import DECISION, SCALE_SHARE, Deviation, deviations, relative_error, worst
 from tests.frames import SPLIT, TINY, bumpy_sequence
 
 
-@pytest.mark.parametrize("taa", [False, True])
-def test_covers_every_stage_and_the_result(taa: bool) -> None:
+@pytest.mark.parametrize("chosen", [Settings(), Settings(taa=True), Eaw()], ids=["svgf", "svgf, taa", "eaw"])
+def test_covers_every_stage_and_the_result(chosen: Filter) -> None:
     frames = bumpy_sequence(SPLIT, count=2, shape=TINY)
-    den = Denoiser(TINY, settings=Settings(taa=taa))
+    den = Denoiser(TINY, settings=chosen)
     den.denoise(frames[0])
-    found = deviations(frames, Settings(taa=taa))
+    found = deviations(frames, chosen)
     assert set(found) == {*den.stages, "out"}
     assert {deviation.kernel for deviation in found.values()} == {
-        entry.kernel for entry in pipeline(Inputs.of(frames[0]), den.settings)
+        entry.entry for entry in den.settings.pipeline(Inputs.of(frames[0])).passes
     }
 
 
-@pytest.mark.parametrize("kernel", ["temporal", "atrous"])
-def test_a_wrong_kernel_shows_in_its_own_stages_alone(kernel: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    right = getattr(reference, kernel)
+@pytest.mark.parametrize(("module", "kernel"), [(temporal, "temporal"), (svgf, "atrous")])
+def test_a_wrong_kernel_shows_in_its_own_stages_alone(
+    module: ModuleType, kernel: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    right = getattr(module, kernel)
     stages = {"temporal": {"accumulated", "mean", "moment_variance"}, "atrous": {"level_1", "level_1_variance"}}
 
     def wrong(color, *rest):
         return right(1.01 * color, *rest)
 
-    monkeypatch.setattr(reference, kernel, wrong)
+    monkeypatch.setattr(module, kernel, wrong)
     found = deviations(bumpy_sequence(SPLIT, shape=TINY), Settings(iterations=1))
     assert {name for name, deviation in found.items() if deviation.decided_otherwise > 0.1} <= stages[kernel]
     assert any(deviation.decided_otherwise > 0.5 for deviation in found.values())
