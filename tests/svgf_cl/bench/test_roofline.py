@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from svgf_cl.bench.loads import Loads
 
 from svgf_cl.bench.ceilings import Ceilings
-from svgf_cl.bench.cost import Cost
+from svgf_cl.bench.cost import Cost, Loads
 from svgf_cl.bench.roofline import Bound
 
 CEILINGS = Ceilings([(1000, 100.0), (1000000, 10.0)], aligned_loads=200.0, offset_loads=20.0, flops=50.0)
