@@ -37,28 +37,28 @@ def bind(draw: Callable[..., None], *arguments: object) -> Draw:
     return lambda axes: draw(axes, *arguments)
 
 
-def frame_parts(run: Run) -> dict[str, dict[str, float]]:
-    """Milliseconds per megapixel of every pass, by size and implementation."""
-    found: dict[str, dict[str, float]] = {}
+def frame_parts(run: Run) -> dict[str, dict[tuple[str, str], float]]:
+    """Milliseconds per megapixel of every pass, by size and implementation; passes by their kernel and their name."""
+    found: dict[str, dict[tuple[str, str], float]] = {}
     for device in run.devices:
         for result in run.of(device, clock=EVENT, variant=""):
             facts = result.facts
-            if facts["stage"] in ("frame", "atrous"):
+            if facts["kernel"] is None:  # a whole frame, or all levels
                 continue
             bar = found.setdefault(f"{device.platform}\n{facts['width']}x{facts['height']}", {})
-            bar[facts["stage"]] = 1e9 * result.median / (facts["width"] * facts["height"])
+            bar[facts["kernel"], facts["stage"]] = 1e9 * result.median / (facts["width"] * facts["height"])
     return found
 
 
-def draw_frames(axes: Axes, bars: dict[str, dict[str, float]]) -> None:
+def draw_frames(axes: Axes, bars: dict[str, dict[tuple[str, str], float]]) -> None:
     """A stacked bar for each size: equally long bars mean that time is linear in pixels."""
-    stages = list(dict.fromkeys(stage for bar in bars.values() for stage in bar))
-    kernels = list(dict.fromkeys(stage.split()[0] for stage in stages))  # all levels in one colour
+    passes = list(dict.fromkeys(each for bar in bars.values() for each in bar))
+    kernels = list(dict.fromkeys(kernel for kernel, _ in passes))  # all levels in one colour
     left = np.zeros(len(bars))
-    for stage in stages:
-        width = np.array([bar.get(stage, 0.0) for bar in bars.values()])
-        color = COLORS[kernels.index(stage.split()[0])]
-        axes.barh(list(bars), width, left=left, color=color, edgecolor="white", linewidth=0.5, label=stage)
+    for kernel, name in passes:
+        width = np.array([bar.get((kernel, name), 0.0) for bar in bars.values()])
+        color = COLORS[kernels.index(kernel) % len(COLORS)]
+        axes.barh(list(bars), width, left=left, color=color, edgecolor="white", linewidth=0.5, label=name)
         left += width
     axes.invert_yaxis()
     axes.tick_params(axis="y", labelsize="small")
@@ -68,7 +68,7 @@ def draw_frames(axes: Axes, bars: dict[str, dict[str, float]]) -> None:
 
 def roofline_stages(run: Run, device: DeviceRecord) -> list[Result]:
     """Stages with a bound at the largest size timed, levels together."""
-    found = [r for r in run.of(device, clock=EVENT, variant="") if r.roofline and not r.facts["stage"][-1].isdigit()]
+    found = [r for r in run.of(device, clock=EVENT, variant="") if r.roofline and r.facts["level"] is None]
     largest = max((r.facts["width"] * r.facts["height"] for r in found), default=0)
     return [r for r in found if r.facts["width"] * r.facts["height"] == largest]
 

@@ -123,8 +123,11 @@ class Station:
                     yield self._result(case, row, clock, values, **more)
 
     def _result(self, case: Case, row: Row, clock: str, seconds: Sequence[float], **more: Any) -> Result:
+        passes = {entry.path: entry for entry in case.passes}
         facts = {
             "stage": " ".join(row),
+            "kernel": passes[row].entry if row in passes else None,
+            "level": passes[row].level if row in passes else None,
             "variant": case.variant,
             "width": case.shape[1],
             "height": case.shape[0],

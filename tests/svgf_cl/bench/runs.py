@@ -31,7 +31,10 @@ def device(selector: str = "0:0", **other: Any) -> DeviceRecord:
 def result(stage: str, clock: str, *ms: float, on: str = "0:0", **facts: Any) -> Result:
     """Samples in milliseconds of a stage of 1280x720 frames, or of what `facts` say."""
     usual = {"variant": "", "width": 1280, "height": 720, "signals": 1, "iterations": 5, "cores": None}
-    known = {"stage": stage} | usual | facts
+    kernel, _, level = stage.partition(" ")
+    is_pass = kernel in ("temporal", "variance", "modulate") or level.isdigit()
+    part = {"stage": stage, "kernel": kernel if is_pass else None, "level": int(level) if level.isdigit() else None}
+    known = part | usual | facts
     words = ["svgf", *stage.split(), known["variant"], f"{known['width']}x{known['height']}"]
     return Result(".".join(filter(None, words)), on, clock, tuple(1e-3 * value for value in ms), known)
 
