@@ -3,12 +3,13 @@
 from svgf_cl.check import check_frame, check_sequence
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.device.tuning import Tuning
-from svgf_cl.errors import DeviceError, FileError, FrameError, SettingsError, SvgfError
+from svgf_cl.errors import ArgumentError, DeviceError, FileError, FrameError, SettingsError, SvgfError
 from svgf_cl.filters import Eaw, Settings
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Frame
 
 __all__ = [
+    "ArgumentError",
     "Denoiser",
     "DeviceError",
     "Eaw",

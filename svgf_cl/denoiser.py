@@ -18,7 +18,7 @@ from svgf_cl.device.opencl_errors import allocate, opencl_errors
 from svgf_cl.device.process import check_process
 from svgf_cl.device.tuning import Tuning
 from svgf_cl.device.user_arrays import UserArrays, check_out
-from svgf_cl.errors import FrameError, SvgfError, shown
+from svgf_cl.errors import ArgumentError, SvgfError, shown
 from svgf_cl.filters import Settings
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.pipeline import OUT
@@ -132,8 +132,10 @@ class Denoiser:
         Raises
         ------
         FrameError
-            If a field is missing, of another shape or type, or on another context, if the set of fields changed, if
-            `out` is the memory of a field, or if an event failed. The call counts as not made.
+            If a field is missing, of another shape or type, or on another context. The call counts as not made.
+        ArgumentError
+            If the set of fields changed, if `out` is of another shape or type or is the memory of a field, or if an
+            event failed. The call counts as not made.
         DeviceError
             If the device has no room, or cannot build a kernel: the call counts as not made. If it breaks off in the
             middle of the frame: the past is forgotten, as by `reset`.
@@ -305,7 +307,7 @@ class Denoiser:
         if self._plan and inputs == self._inputs:
             return self._plan
         if not self._is_cut:
-            raise FrameError("fields", f"{self._inputs} as before, or a call of reset", str(inputs))
+            raise ArgumentError("frame", f"the fields {self._inputs} as before, or a call of reset", str(inputs))
         self._plan = None  # gives its memory back first
         return Plan(self._settings.pipeline(inputs), self._workplace)
 

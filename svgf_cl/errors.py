@@ -15,6 +15,13 @@ class FrameError(SvgfError):
         self.field = field
 
 
+class ArgumentError(SvgfError):
+    """An argument of `Denoiser.denoise` beside the frame's fields is wrong: where the result goes, what to wait for."""
+
+    def __init__(self, argument: str, expected: str, got: str) -> None:
+        super().__init__(f"denoise({argument}): expected {expected}, got {got}")
+
+
 class SettingsError(SvgfError):
     """A setting is out of its range."""
 

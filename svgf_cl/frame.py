@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pyopencl.array as cl_array
 
-from svgf_cl.errors import FrameError
+from svgf_cl.errors import ArgumentError, FrameError
 
 # Luminance of linear Rec. 709 red, green and blue.
 LUMINANCE: tuple[float, float, float] = (0.2126, 0.7152, 0.0722)
@@ -131,9 +131,14 @@ def check_field(name: str, value: Any, shape: Shape) -> None:
 
 
 def check_array(name: str, value: Any) -> None:
-    """Raise `FrameError` unless `value` is of a type that the denoiser reads."""
+    """Raise the error of `wrong` unless `value` is of a type that the denoiser reads or writes."""
     if not isinstance(value, UserArray):
-        raise FrameError(name, "a numpy.ndarray or pyopencl.array.Array", type(value).__name__)
+        raise wrong(name, "a numpy.ndarray or pyopencl.array.Array", type(value).__name__)
+
+
+def wrong(name: str, expected: str, got: str) -> FrameError | ArgumentError:
+    """The error of an array of the user's: `FrameError` for a frame's field, else `ArgumentError`."""
+    return (FrameError if name in CHANNELS else ArgumentError)(name, expected, got)
 
 
 def extent(shape: Shape) -> str:

@@ -79,7 +79,7 @@ class Result:
     seconds : tuple of float
     facts : dict
         What was timed (stage, its kernel and level, width, height, signals, iterations, cores) and, by the device's
-        to its roofline (bytes moved, loaded, flops, bound in s, binds).
+        clock, how near it came to its roofline (bytes moved, loaded, flops, bound in s, binds).
     """
 
     name: str

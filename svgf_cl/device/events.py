@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 import pyopencl as cl
 import pyopencl.array as cl_array
 
-from svgf_cl.errors import FrameError
-from svgf_cl.frame import UserArray
+from svgf_cl.errors import ArgumentError
+from svgf_cl.frame import UserArray, wrong
 
 
 def pending(wait_for: Sequence[cl.Event], arrays: Mapping[str, UserArray], queue: cl.CommandQueue) -> list[cl.Event]:
@@ -16,13 +16,13 @@ def pending(wait_for: Sequence[cl.Event], arrays: Mapping[str, UserArray], queue
 
     Raises
     ------
-    FrameError
+    FrameError, ArgumentError
         If one is no event of the queue's context, or its command has failed. Drivers would hang, or not tell.
     """
     try:
         events = [("wait_for", event) for event in wait_for]
     except TypeError as error:
-        raise FrameError("wait_for", "a sequence of pyopencl.Event", type(wait_for).__name__) from error
+        raise ArgumentError("wait_for", "a sequence of pyopencl.Event", type(wait_for).__name__) from error
     events += [(name, event) for name, value in arrays.items() for event in unfinished(value, queue)]
     for name, event in events:
         check_event(name, event, queue.context)
@@ -36,10 +36,10 @@ def unfinished(value: UserArray, queue: cl.CommandQueue) -> Iterator[cl.Event]:
 
 
 def check_event(name: str, event: cl.Event, context: cl.Context) -> None:
-    """Raise `FrameError` unless commands of this context can wait for an event."""
+    """Raise the error of `wrong` unless commands of this context can wait for an event."""
     if not isinstance(event, cl.Event):
-        raise FrameError(name, "a pyopencl.Event to wait for", type(event).__name__)
+        raise wrong(name, "a pyopencl.Event to wait for", type(event).__name__)
     if event.get_info(cl.event_info.CONTEXT) != context:
-        raise FrameError(name, "an event in the context of Denoiser(queue=...)", "one of another context")
+        raise wrong(name, "an event in the context of Denoiser(queue=...)", "one of another context")
     if (status := event.command_execution_status) < 0:
-        raise FrameError(name, "an event that ends well", f"one whose command failed with status {status}")
+        raise wrong(name, "an event that ends well", f"one whose command failed with status {status}")

@@ -11,9 +11,9 @@ import pyopencl as cl
 import pyopencl.array as cl_array
 
 from svgf_cl.device.opencl_errors import allocate, lack_of_room
-from svgf_cl.errors import FrameError
+from svgf_cl.errors import ArgumentError
 from svgf_cl.filters.pipeline import OUT
-from svgf_cl.frame import UserArray, check_array
+from svgf_cl.frame import UserArray, check_array, wrong
 
 
 class UserArrays:
@@ -32,7 +32,7 @@ class UserArrays:
 
         Raises
         ------
-        FrameError
+        FrameError, ArgumentError
             If an Array is not plain memory of this queue's context, or the result is the memory of a field.
         DeviceError
             If the device has no room.
@@ -65,15 +65,15 @@ class UserArrays:
         """The buffer behind a user's `Array`, used as it is."""
         wanted = np.dtype(np.uint32 if name == "id" else np.float32)
         if value.dtype != wanted:
-            raise FrameError(name, f"dtype {wanted}", f"dtype {value.dtype}")
+            raise wrong(name, f"dtype {wanted}", f"dtype {value.dtype}")
         if value.offset or not value.flags.c_contiguous:
-            raise FrameError(name, "a C-contiguous Array with offset 0 (use .copy())", "a view")
+            raise wrong(name, "a C-contiguous Array with offset 0 (use .copy())", "a view")
         if value.context != self._queue.context:
-            raise FrameError(name, "an Array in the context of Denoiser(queue=...)", "one of another context")
+            raise wrong(name, "an Array in the context of Denoiser(queue=...)", "one of another context")
         if not isinstance(value.base_data, cl.MemoryObjectHolder):
-            raise FrameError(name, "an Array in a buffer or memory pool", type(value.base_data).__name__)
+            raise wrong(name, "an Array in a buffer or memory pool", type(value.base_data).__name__)
         if value.base_data.size < value.nbytes:
-            raise FrameError(name, f"a buffer of {value.nbytes} bytes", f"one of {value.base_data.size}")
+            raise wrong(name, f"a buffer of {value.nbytes} bytes", f"one of {value.base_data.size}")
         return cast("cl.Buffer", value.base_data)  # one from a pool is used just like it
 
     def _wrapped(self, arrays: Mapping[str, np.ndarray]) -> dict[str, cl.Buffer]:
@@ -122,14 +122,14 @@ def wrap(queue: cl.CommandQueue, value: np.ndarray) -> cl.Buffer:
 
 
 def check_apart(buffers: Mapping[str, cl.Buffer]) -> None:
-    """Raise `FrameError` where the result would overwrite a field that neighbouring pixels still read."""
+    """Raise `ArgumentError` where the result would overwrite a field that neighbouring pixels still read."""
     if OUT not in buffers:
         return
     result, begin, end = place(buffers[OUT])
     for name, buffer in buffers.items():
         memory, first, last = place(buffer)
         if name != OUT and memory == result and first < end and begin < last:
-            raise FrameError(OUT, "memory of its own", f"that of {name}")
+            raise ArgumentError(OUT, "memory of its own", f"that of {name}")
 
 
 def place(buffer: cl.Buffer) -> tuple[int, int, int]:
@@ -139,9 +139,9 @@ def place(buffer: cl.Buffer) -> tuple[int, int, int]:
 
 
 def check_out(out: Any, shape: tuple[int, int, int]) -> None:
-    """Raise `FrameError` unless a result of this shape can be written to `out`."""
-    check_array("out", out)
+    """Raise `ArgumentError` unless a result of this shape can be written to `out`."""
+    check_array(OUT, out)
     if tuple(out.shape) != shape or out.dtype != np.float32:
-        raise FrameError("out", f"shape {shape}, float32", f"shape {tuple(out.shape)}, {out.dtype}")
+        raise ArgumentError(OUT, f"shape {shape}, float32", f"shape {tuple(out.shape)}, {out.dtype}")
     if not out.flags.c_contiguous or (isinstance(out, np.ndarray) and not out.flags.writeable):
-        raise FrameError("out", "a writable C-contiguous array", "a view or read-only array")
+        raise ArgumentError(OUT, "a writable C-contiguous array", "a view or read-only array")

@@ -15,7 +15,7 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from svgf_cl import Denoiser, DeviceError, Eaw, Frame, FrameError, Inputs, Settings, SvgfError
+from svgf_cl import ArgumentError, Denoiser, DeviceError, Eaw, Frame, Inputs, Settings, SvgfError
 from svgf_cl.device import devices
 from svgf_cl.device.layout import HALO, Layout
 from svgf_cl.frame import Shape
@@ -162,7 +162,9 @@ class TestReset:
         den = Denoiser(SHAPE)
         den.denoise(bumpy_sequence(SPLIT, count=1)[0])
         (plain,) = bumpy_sequence(PLAIN, count=1)
-        with pytest.raises(FrameError, match=r"expected direct, indirect, .* as before, or a call of reset, got color"):
+        with pytest.raises(
+            ArgumentError, match=r"expected the fields direct, indirect, .* as before, or a call of reset, got color"
+        ):
             den.denoise(plain)
         den.reset()
         assert_array_equal(den.denoise(plain), Denoiser(SHAPE).denoise(plain))

@@ -9,7 +9,7 @@ import pyopencl as cl
 import pyopencl.array as cl_array
 import pytest
 
-from svgf_cl import FrameError
+from svgf_cl import ArgumentError, FrameError
 from svgf_cl.device.events import pending
 
 
@@ -23,18 +23,18 @@ def test_events_of_other_queues_are_waited_for(queue: cl.CommandQueue) -> None:
 
 @pytest.mark.parametrize("events", [None, 1])
 def test_what_holds_no_events_is_refused(queue: cl.CommandQueue, events: Any) -> None:
-    with pytest.raises(FrameError, match=r"wait_for: expected a sequence of pyopencl\.Event, got (NoneType|int)"):
+    with pytest.raises(ArgumentError, match=r"wait_for\): expected a sequence of pyopencl\.Event, got (NoneType|int)"):
         pending(events, {}, queue)
 
 
 def test_what_is_no_event_is_refused(queue: cl.CommandQueue) -> None:
-    with pytest.raises(FrameError, match=r"wait_for: expected a pyopencl\.Event to wait for, got str"):
+    with pytest.raises(ArgumentError, match=r"wait_for\): expected a pyopencl\.Event to wait for, got str"):
         pending(["done"], {}, queue)
 
 
 def test_an_event_of_another_context_is_refused(queue: cl.CommandQueue) -> None:
     other = cl.Context([queue.device])
-    with pytest.raises(FrameError, match=r"wait_for: expected an event in the context .*, got one of another"):
+    with pytest.raises(ArgumentError, match=r"wait_for\): expected an event in the context .*, got one of another"):
         pending([cl.UserEvent(other)], {}, queue)
 
 
