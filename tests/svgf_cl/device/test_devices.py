@@ -17,7 +17,7 @@ from svgf_cl.device import devices, intel_runtime, probe
 
 POCL = "Portable Computing Language"
 INTEL = intel_runtime.PLATFORM
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 
 
 @dataclass(eq=False)

@@ -7,12 +7,12 @@ import pyopencl as cl
 import pyopencl.array as cl_array
 import pytest
 from numpy.testing import assert_array_equal
-from tests.svgf_cl.test_user_arrays import on_device
 
 from svgf_cl import Denoiser
 from svgf_cl.device.launch import Launch
 from svgf_cl.filters.pipeline import Pass
 from tests.frames import FULL, SHAPE, bumpy_sequence
+from tests.svgf_cl.device.test_user_arrays import on_device
 
 SOURCE = """
 kernel void scaled(global const float *in, const float factor, const int4 shift, global float *out) {

@@ -7,13 +7,13 @@ import itertools
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.svgf_cl.test_passes import every_inputs
 
 from svgf_cl import Settings
 from svgf_cl.device.layout import Layout
 from svgf_cl.device.memory_plan import Slot, memory_slots
 from svgf_cl.filters.formats import Planes, stored
 from svgf_cl.filters.pipeline import HISTORY, IN_PLACE, OUT, PREVIOUS, Inputs, Pass, history_pairs, pipeline
+from tests.svgf_cl.filters.test_pipeline import every_inputs
 
 every_settings = st.builds(
     Settings,
