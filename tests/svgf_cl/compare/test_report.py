@@ -43,7 +43,7 @@ def test_a_reference_without_its_picture_is_refused(tmp_path: Path) -> None:
 
 def test_pictures_of_other_sizes_are_refused(tmp_path: Path) -> None:
     a, b = written(tmp_path / "a", "frame.0000.exr"), written(tmp_path / "b", "frame.0000.exr", rows=13)
-    with pytest.raises(FileError, match="expected 16x13 pixels as in .*, got 16x12"):
+    with pytest.raises(FileError, match=r"expected 16x13 pixels as in .*, got 16x12"):
         measured(a / "frame.0000.exr", b / "frame.0000.exr", 0.0)
 
 
