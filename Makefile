@@ -19,10 +19,11 @@ test: device  ## run the tests
 test-all: implementations  ## run the tests on PoCL, Intel's runtime, rusticl, Oclgrind and every GPU; show each kernel's error
 	$(BIN)/python -m scripts.test_all
 
-lint: $(READY)  ## check style, types and kernels (needs clang)
+lint: $(READY)  ## check style, types, who imports whom, and kernels (needs clang)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/lint-imports
 	$(BIN)/python scripts/lint_kernels.py
 
 # Intel's runtime as a second device, and a rival: 350 MB in all, and the report does without what cannot be had.

@@ -117,7 +117,7 @@ def checks() -> str:
 
 def main() -> None:
     """Run the command."""
-    run(check_inputs, "check_inputs")
+    run(check_inputs, "benchmarks.check_inputs")
 
 
 if __name__ == "__main__":

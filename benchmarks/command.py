@@ -10,8 +10,8 @@ import typer
 from svgf_cl.cli import leave
 
 
-def run(command: Callable[..., None], name: str) -> None:
-    """Run `command` on the process's arguments; what a user can get wrong is told under `name`, in exit code 2."""
+def run(command: Callable[..., None], module: str) -> None:
+    """Run `command`, of this module, on the process's arguments; what a user can get wrong ends in exit code 2."""
     app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
     app.command()(command)
-    leave(app, sys.argv[1:], name, f"python -m {name}")
+    leave(app, sys.argv[1:], module.rpartition(".")[2], f"python -m {module}")

@@ -31,13 +31,14 @@ from benchmarks.measurements import measure, steps
 from benchmarks.provenance import provenance
 from benchmarks.variants import VARIANTS
 from svgf_cl.cli.console import progress_bar, show
-from svgf_cl.cli.options import parse_rgb, parse_size
+from svgf_cl.cli.options import parse_size
 from svgf_cl.compare.metrics import require_flip
 from svgf_cl.device import devices
 from svgf_cl.frame import extent
 from svgf_cl.io.atomic import make_folder
 from svgf_cl_tracer import Camera
 from svgf_cl_tracer.cli.render import CAMERA_HELP
+from svgf_cl_tracer.cli.scenes import parse_rgb
 from svgf_cl_tracer.references import CHUNK
 
 
@@ -89,7 +90,7 @@ def found(footages: Sequence[Footage], rounds: int) -> Findings:
 
 def main() -> None:
     """Run the command."""
-    run(speed_against_error, "speed_against_error")
+    run(speed_against_error, "benchmarks.speed_against_error")
 
 
 if __name__ == "__main__":

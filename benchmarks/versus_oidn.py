@@ -179,7 +179,7 @@ def qualities(
 
 def main() -> None:
     """Run the command."""
-    run(versus_oidn, "versus_oidn")
+    run(versus_oidn, "benchmarks.versus_oidn")
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ TARGET = Path("docs/scene_description.md")
 
 INTRODUCTION = """# scene.json
 
-Made by `make docs` (`python scripts/scene_description.py`) from `tracer/description`; do not edit.
+Made by `make docs` (`python scripts/scene_description.py`) from `tracer/svgf_cl_tracer/description`; do not edit.
 
 What a model's own file lacks of a scene, in a file beside it; `svgf-cl render FOLDER` takes both. Numbers and booleans
 are not put into quotes, and a field that is not listed here is an error. Colours are linear, of sRGB's primaries.

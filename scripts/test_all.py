@@ -11,14 +11,21 @@ from pathlib import Path
 
 from benchmarks.implementations import Environment, environments
 
+# The kernels once more, on path-traced frames.
+TRACED = "tests/tracer/test_kernels_on_traced.py"
 # All that touches a device; the rest is the same everywhere.
 ON_A_DEVICE = (
     "tests/kernels",
     "tests/hard",
-    *(f"tests/svgf_cl/test_{name}.py" for name in ("accuracy", "denoiser", "probe", "programs", "stages", "tuning")),
+    TRACED,
+    "tests/tracer/hard",
+    "tests/svgf_cl/test_denoiser.py",
+    *(f"tests/svgf_cl/device/test_{name}.py" for name in ("probe", "programs", "tuning")),
+    "tests/svgf_cl/filters/test_stages.py",
+    "tests/svgf_cl/oracle/test_accuracy.py",
 )
 # The kernels in all their variants.
-KERNELS = ("tests/kernels", "tests/hard/test_variants.py", "-k", "follows_the_oracle or oclgrind")
+KERNELS = ("tests/kernels", TRACED, "tests/hard/test_variants.py", "-k", "follows_the_oracle or oclgrind")
 SUITES = {
     "PoCL": ("tests",),
     # A simulator takes a millisecond and more for every pixel of a frame.

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pyopencl as cl
 import pytest
 
-import svgf_cl_tracer  # noqa: F401  # now: what it has compiled lies in the user's own cache folder, not in those below
 from svgf_cl.device import devices, tuning
 from svgf_cl.io import cache
+from tests.command_line import run
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -40,3 +42,24 @@ def queue() -> cl.CommandQueue:
 def context(queue: cl.CommandQueue) -> cl.Context:
     """The context of `queue`."""
     return queue.context
+
+
+@pytest.fixture
+def frames(rendered: Path, tmp_path: Path) -> Path:
+    """A copy of `rendered`, to be broken."""
+    return Path(shutil.copytree(rendered, tmp_path / "frames"))
+
+
+@pytest.fixture
+def refused(capsys: pytest.CaptureFixture[str]) -> Callable[..., None]:
+    """Check that a command line is refused: exit code 2 and one line on stderr, with these words and no traceback."""
+
+    def check(words: str, *argv: str | Path) -> None:
+        capsys.readouterr()
+        assert run(*argv) == 2
+        said = capsys.readouterr().err
+        assert said.startswith("svgf-cl: ")
+        assert said.count("\n") == 1, said
+        assert words in said
+
+    return check

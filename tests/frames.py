@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import os
 from typing import Any
 
@@ -10,7 +9,6 @@ import numpy as np
 
 from svgf_cl.device import devices
 from svgf_cl.frame import CHANNELS, Frame, Shape
-from svgf_cl_tracer import Shot, builtin_scene, render_sequence
 
 # Primes: no multiple of any vector width. Fewer on a simulator, which takes a millisecond for every pixel.
 SHAPE = (13, 29) if os.environ.get(devices.VARIABLE) == devices.SIMULATOR else (53, 37)
@@ -75,12 +73,3 @@ def bumpy_sequence(
     """Bumpy frames with these fields; every frame moves in a direction of its own."""
     rng = np.random.default_rng(seed)
     return [only(bumpy(rng, shape), fields, motion) for _ in range(count)]
-
-
-@functools.cache
-def traced_sequence(
-    fields: tuple[str, ...], count: int = 5, shape: Shape = (SHAPE[0] + 1, 2 * SHAPE[1])
-) -> tuple[Frame, ...]:
-    """Path-traced frames of the built-in scene under its moving camera."""
-    shot = Shot(builtin_scene(), shape, count)
-    return tuple(only(frame, fields) for frame in render_sequence(shot))

@@ -12,7 +12,7 @@ import pytest
 from svgf_cl import Frame, Settings
 from svgf_cl.oracle.accuracy import Deviation, deviations
 from tests.denoising import vector_width
-from tests.frames import FULL, PLAIN, SPLIT, bumpy_sequence, traced_sequence
+from tests.frames import FULL, PLAIN, SPLIT, bumpy_sequence
 
 # Largest error of any pixel, relative as defined in svgf_cl.oracle.accuracy; about three times what was measured.
 # float32 rounds by 2^-24 = 6e-8 of a value. Where an error exceeds a few of these, something amplifies it.
@@ -69,8 +69,6 @@ CASES = {
     "full": Case(partial(bumpy_sequence, FULL), Settings(taps="5x5")),
     "split": Case(partial(bumpy_sequence, SPLIT)),
     "split, unusual settings": Case(partial(bumpy_sequence, SPLIT), UNUSUAL),
-    "traced": Case(partial(traced_sequence, FULL), Settings(taps="5x5")),
-    "traced, antialiased": Case(partial(traced_sequence, SPLIT), Settings(taa=True, taps="5x5")),
     "albedo alone": Case(partial(bumpy_sequence, ("color", "albedo")), width=1),
     "emission alone": Case(partial(bumpy_sequence, ("color", "emission"), motion=2), Settings(sigma_normal=16), 4),
     "ids alone": Case(partial(bumpy_sequence, ("color", "id"), motion=2), Settings(sigma_normal=32), 1),
@@ -82,15 +80,19 @@ antialiased_cases = pytest.mark.parametrize("case", [name for name, case in CASE
 
 
 @functools.cache
-def measured(case: str) -> dict[str, Deviation]:
+def measured(chosen: Case) -> dict[str, Deviation]:
     """How far each stage lies off the oracle; "out" goes by the name of what it is, modulated or resolved."""
-    chosen = CASES[case]
     with vector_width(chosen.width):
         found = deviations(chosen.frames(), chosen.settings)
     return found | {"resolved" if chosen.settings.taa else "modulated": found.pop("out")}
 
 
 def assert_follows_oracle(case: str, *stages: str) -> None:
+    """What `assert_case_follows_oracle` asserts, of one of `CASES`."""
+    assert_case_follows_oracle(CASES[case], *stages)
+
+
+def assert_case_follows_oracle(case: Case, *stages: str) -> None:
     """Every one of these stages, and for "level" and "level_variance" every level, keeps its tolerance."""
     for name, deviation in measured(case).items():
         kind = "level" + name[len("level_1") :] if name.startswith("level_") else name

@@ -14,10 +14,13 @@ import pytest
 ROOT = Path(__file__).parents[1]
 
 USE = """
-import sys, svgf_cl
+import sys, svgf_cl, svgf_cl_tracer
+from svgf_cl.cli import commands
 from svgf_cl.device import devices
 from svgf_cl.device import programs
-assert svgf_cl.__file__.startswith(sys.argv[1]), svgf_cl.__file__
+for package in (svgf_cl, svgf_cl_tracer):
+    assert package.__file__.startswith(sys.argv[1]), package.__file__
+assert commands()["render"].__module__ == "svgf_cl_tracer.cli.render"
 queue = devices.default_queue()
 macros = dict(VW=4, SIGNALS=1, MOTION=2, HAS_ALBEDO=0, HAS_EMISSION=0, HAS_ID=0, TAA=0, FAST=0, RADIUS=2)
 print(programs.build(queue.context, queue.device, "variance", macros).kernel_names)
@@ -52,9 +55,11 @@ def test_wheel_holds_kernels_types_and_license(wheel):
     names = set(zipfile.ZipFile(wheel).namelist())
     assert {f"svgf_cl/kernels/{path.name}" for path in (ROOT / "kernels").glob("*.cl*")} <= names
     assert {"svgf_cl/py.typed", "svgf_cl/denoiser.py"} <= names
-    assert any(name.startswith("tracer/") for name in names)
+    assert "svgf_cl_tracer/builtin/cornell.py" in names
+    (declared,) = (name for name in names if name.endswith("entry_points.txt"))
+    assert "svgf_cl_tracer.cli.render:render" in zipfile.ZipFile(wheel).read(declared).decode()
     assert any(name.endswith("LICENSE") for name in names)
-    assert not any(name.startswith(("tests", "kernels", "benchmarks")) for name in names)
+    assert not any(name.startswith(("tests", "kernels", "benchmarks", "tracer/")) for name in names)
 
 
 def test_installed_wheel_builds_a_program_anywhere(wheel, tmp_path):

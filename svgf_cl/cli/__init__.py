@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import sys
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from importlib.metadata import EntryPoint, entry_points
 from typing import Annotated, Any, NoReturn
 
@@ -28,30 +29,33 @@ COMMANDS: dict[str, Command] = {
 GROUP = "svgf_cl.commands"
 # As the help lists them; any others come behind.
 ORDER = ("devices", "demo", "scenes", "render", "check", "denoise", "compare", "bench", "tune")
+# What a command says that takes whatever comes.
+ANYTHING = {"ignore_unknown_options": True, "allow_extra_args": True}
 
 
-def commands() -> dict[str, Command]:
+@dataclass(frozen=True)
+class Unavailable:
+    """A declared command that cannot be imported, and why."""
+
+    complaint: str
+
+    def refuse(self) -> None:
+        """Raise `SvgfError`."""
+        raise SvgfError(self.complaint)
+
+
+def commands() -> dict[str, Command | Unavailable]:
     """Every command by its name: svgf_cl's own, and those of other packages that are installed."""
     found = {entry.name: loaded(entry) for entry in entry_points(group=GROUP)} | COMMANDS
     return {name: found[name] for name in sorted(found, key=lambda name: ((*ORDER, name).index(name), name))}
 
 
-def loaded(entry: EntryPoint) -> Command:
-    """The function of an entry point; where it cannot be imported, one that says so when it is called."""
+def loaded(entry: EntryPoint) -> Command | Unavailable:
+    """The function of an entry point; whatever is wrong with it, the other commands work."""
     try:
         command: Command = entry.load()
     except Exception as error:  # it runs what others wrote
-        return broken(f"{entry.name}: {entry.value} cannot be imported ({one_line(error)})")
-    return command
-
-
-def broken(complaint: str) -> Command:
-    """A command that takes whatever comes and raises `SvgfError`."""
-
-    def command(context: typer.Context) -> None:
-        raise SvgfError(complaint)
-
-    command.__doc__ = complaint
+        return Unavailable(f"{entry.name}: {entry.value} cannot be imported ({one_line(error)})")
     return command
 
 
@@ -67,7 +71,10 @@ def application() -> typer.Typer:
         callback=common,
     )
     for name, command in commands().items():
-        app.command(name)(command)
+        if isinstance(command, Unavailable):
+            app.command(name, help=command.complaint, context_settings=ANYTHING)(command.refuse)
+        else:
+            app.command(name)(command)
     return app
 
 

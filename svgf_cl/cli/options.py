@@ -58,19 +58,6 @@ def parse_size(text: str) -> tuple[int, int]:
     return height, width
 
 
-def parse_rgb(text: str) -> tuple[float, float, float]:
-    """Read ``0.4,0.5,0.7`` as three radiances >= 0."""
-    try:
-        red, green, blue = (float(part) for part in text.split(","))
-    except ValueError as error:
-        raise SvgfError(
-            f"--sky: expected three numbers such as 0.4,0.5,0.7 or a file .hdr or .exr, got {text!r}"
-        ) from error
-    if not all(0 <= value < float("inf") for value in (red, green, blue)):
-        raise SvgfError(f"--sky: expected finite radiance >= 0, got {text!r}")
-    return red, green, blue
-
-
 def parse_settings(filter_: str, texts: Iterable[str]) -> Filter:
     """Read ``"svgf", ["iterations=4", "taa=on"]`` as `Settings`; `SettingsError` for a wrong name or value."""
     if filter_ not in FILTERS:

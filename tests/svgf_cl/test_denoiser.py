@@ -22,7 +22,7 @@ from svgf_cl.frame import Shape
 from svgf_cl.oracle.accuracy import DECISION, largest_channel, relative_error
 from svgf_cl.oracle.svgf import Oracle
 from tests.denoising import feed, vector_width
-from tests.frames import FULL, PLAIN, SHAPE, SPLIT, TINY, bumpy_sequence, only, traced_sequence, wall
+from tests.frames import FULL, PLAIN, SHAPE, SPLIT, TINY, bumpy_sequence, only, wall
 from tests.oracle import DECIDED_OTHERWISE, PIPELINE_TOLERANCE
 from tests.svgf_cl.device.test_user_arrays import on_device
 
@@ -50,10 +50,8 @@ class TestOracle:
             (bumpy_sequence(PLAIN, count=10), Settings()),
             (bumpy_sequence(FULL, count=10), Settings(alpha_color=0, alpha_moments=0)),
             (bumpy_sequence(SPLIT, count=10), TAA),
-            (traced_sequence(FULL, count=8), Settings()),
-            (traced_sequence(SPLIT, count=8), TAA),
         ],
-        ids=["plain", "full", "split", "traced", "traced split"],
+        ids=["plain", "full", "split"],
     )
     def test_errors_do_not_build_up_over_a_sequence(self, frames: Sequence[Frame], chosen: Settings) -> None:
         den, oracle = Denoiser(frames[0].shape, settings=chosen), Oracle(frames[0].shape, chosen)

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+import svgf_cl_tracer.api  # noqa: F401  # now: what it has compiled lies in the user's own cache folder, not the tests'
 from svgf_cl_tracer.geometry import Instance
 from svgf_cl_tracer.materials import Material
 from svgf_cl_tracer.motion import Motion

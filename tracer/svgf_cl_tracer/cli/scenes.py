@@ -6,7 +6,6 @@ import signal
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from svgf_cl.cli.options import parse_rgb
 from svgf_cl.errors import SvgfError
 
 if TYPE_CHECKING:
@@ -42,6 +41,19 @@ def read_sky(text: str) -> tuple[float, float, float] | Environment:
     import svgf_cl_tracer
 
     return svgf_cl_tracer.load_environment(text) if Path(text).suffix.lower() in (".hdr", ".exr") else parse_rgb(text)
+
+
+def parse_rgb(text: str) -> tuple[float, float, float]:
+    """Read ``0.4,0.5,0.7`` as three radiances >= 0."""
+    try:
+        red, green, blue = (float(part) for part in text.split(","))
+    except ValueError as error:
+        raise SvgfError(
+            f"--sky: expected three numbers such as 0.4,0.5,0.7 or a file .hdr or .exr, got {text!r}"
+        ) from error
+    if not all(0 <= value < float("inf") for value in (red, green, blue)):
+        raise SvgfError(f"--sky: expected finite radiance >= 0, got {text!r}")
+    return red, green, blue
 
 
 def open_scene(

@@ -11,7 +11,7 @@ import pytest
 from svgf_cl.check.alignment import FIELDS, PUNCTUAL, UPRIGHT
 from svgf_cl.check.check import Check
 from svgf_cl.check.finding import Finding
-from tests.svgf_cl.check.scenes import asked, good
+from tests.tracer.check.scenes import asked, good
 
 FRAMES = [taken.frame for taken in good("cornell")]
 

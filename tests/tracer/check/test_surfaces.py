@@ -10,7 +10,7 @@ import pytest
 
 from svgf_cl.check.surfaces import DEEPER, NAMES, WORLD, rotation_between
 from svgf_cl.frame import Frame
-from tests.svgf_cl.check.scenes import asked, good
+from tests.tracer.check.scenes import asked, good
 
 RNG = np.random.default_rng(1)
 AHEAD = [taken.frame for taken in good("contrast")]  # the camera walks ahead

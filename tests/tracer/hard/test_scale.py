@@ -9,8 +9,8 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from svgf_cl import Frame
-from tests.frames import traced_sequence
 from tests.hard.variants import Variant
+from tests.tracer.frames import traced_sequence
 
 # A depth in another unit is rounded otherwise, by 2^-24, and edges are told by 1e-3 of it or less. Three times what was
 # measured, beside what rounding of the light adds.

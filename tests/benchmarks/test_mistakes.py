@@ -10,9 +10,9 @@ from benchmarks.mistakes import MISTAKES, ROOM, good_sequence
 from svgf_cl import check_sequence
 from svgf_cl.check import alignment, motion, surfaces
 from svgf_cl_tracer import BUILTIN
-from tests.svgf_cl.check.scenes import FRAMES, SHAPE, good
+from tests.tracer.check.scenes import FRAMES, SHAPE, good
 
-SCENES = Path(__file__).parents[4] / "shared" / "scenes"
+SCENES = Path(__file__).parents[3] / "shared" / "scenes"
 REAL = ("sponza", "classroom", "living_room", "garden", "veach_ajar", "cornell_box")
 # Checks were developed in the first two; the others were held out: docs/checking_inputs.md has all scenes.
 TOLD = ("cornell", "mirror", "swing", "fence")

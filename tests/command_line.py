@@ -1,0 +1,73 @@
+"""Runs ``svgf-cl`` in this process, or in one that is killed."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from svgf_cl.cli import main
+from svgf_cl.io import cache
+
+# Of the frames that most tests begin with.
+NAMES = [f"frame.{number:04d}.exr" for number in range(3)]
+
+# Kills the process as the picture with that number is whole but has not got its name yet. What the tracer has compiled
+# lies in the user's own cache folder, wherever the rest may be kept.
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+{first}
+from svgf_cl.io import cache
+from svgf_cl.cli import main
+left, folder, rename = int(sys.argv[1]), Path(sys.argv[2]), os.replace
+def rename_or_die(source, target):
+    global left
+    left -= str(target).endswith(".exr")
+    if left < 0:
+        os.kill(os.getpid(), signal.SIGKILL)
+    rename(source, target)
+os.replace, cache.cache_folder = rename_or_die, lambda: folder
+main(sys.argv[3:])
+"""
+
+
+def run(*argv: str | Path) -> int:
+    """Exit code of ``svgf-cl argv``."""
+    with pytest.raises(SystemExit) as left:
+        main([str(argument) for argument in argv])
+    return int(left.value.code or 0)
+
+
+def run_killed(after: int, *argv: str | Path, first: str = "") -> None:
+    """Run ``svgf-cl argv`` in a process that dies after so many EXR files; `first` is run there before all else."""
+    program = KILLED.format(first=first)
+    command = [sys.executable, "-c", program, str(after), cache.cache_folder(), *argv]
+    child = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert child.returncode == -signal.SIGKILL, child.stderr
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """What is in `folder` and those below, by name."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def assert_goes_on(command: tuple[str | Path, ...], killed: tuple[int, ...], folder: Path, first: str = "") -> None:
+    """A command that is killed after so many EXR files, each time it is run again, ends as if it had not been."""
+    assert run(*command, "-o", folder / "whole") == 0
+    whole, broken = contents(folder / "whole"), folder / "broken"
+    for after in killed:
+        run_killed(after, *command, "-o", broken, first=first)
+        left = contents(broken)
+        hidden = [name for name in left if Path(name).name.startswith(".")]
+        assert len(hidden) == 1, "what it was writing"
+        assert left.items() - {(name, left[name]) for name in hidden} <= whole.items()
+    done = {path: path.stat() for path in broken.rglob("[!.]*.exr")}
+    assert len(done) == sum(killed)
+    assert run(*command, "-o", broken) == 0
+    assert contents(broken) == whole
+    frames = [path for path in done if path.name.startswith("frame")]
+    assert all(path.stat().st_ino == done[path].st_ino for path in frames), "kept, not written again"

@@ -1,0 +1,87 @@
+"""``svgf-cl denoise`` as people use it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from svgf_cl.io.exr import read_channels, write_channels
+from svgf_cl.io.frames import read_frame, write_frame
+from tests.command_line import NAMES, run
+
+
+def test_settings_reach_the_filter(rendered: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("denoise", rendered, "-o", tmp_path, "--set", "iterations=2") == 0
+    said = capsys.readouterr().out
+    assert "atrous 2" in said
+    assert "atrous 3" not in said
+
+
+def test_single_files_are_denoised_in_the_order_given(rendered: Path, tmp_path: Path) -> None:
+    assert run("denoise", rendered / NAMES[0], rendered / NAMES[1], "-o", tmp_path) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == NAMES[:2]
+
+
+@pytest.mark.parametrize("stops", ["2000", "-65", "nan", "inf"])
+def test_a_bad_exposure(stops: str, rendered: Path, tmp_path: Path, refused) -> None:
+    refused("expected stops in -64..64", "denoise", rendered, "-o", tmp_path, "--png", f"--exposure={stops}")
+
+
+def test_pictures_of_an_earlier_run_are_not_mixed_in(frames: Path, tmp_path: Path, refused) -> None:
+    assert run("denoise", frames, "-o", tmp_path / "clean", "--png") == 0
+    assert run("denoise", frames, "-o", tmp_path / "clean", "--png") == 0
+    refused("left by an earlier run", "denoise", frames / NAMES[0], "-o", tmp_path / "clean")
+
+
+def test_missing_and_empty_input(tmp_path: Path, refused) -> None:
+    refused("nowhere: expected a file or a folder", "denoise", tmp_path / "nowhere", "-o", tmp_path / "out")
+    refused("expected files named frame.0000.exr", "denoise", tmp_path, "-o", tmp_path / "out")
+
+
+def test_sizes_that_differ(frames: Path, refused) -> None:
+    frame = read_frame(frames / NAMES[1])
+    cropped = {name: np.ascontiguousarray(value[:-2]) for name, value in frame.present().items()}
+    write_frame(frames / NAMES[1], replace(frame, **cropped))
+    refused("0001.exr: expected 32x18 pixels", "denoise", frames, "-o", frames / "out")
+
+
+def test_an_absent_field(frames: Path, refused) -> None:
+    planes = read_channels(frames / NAMES[0])
+    write_channels(frames / NAMES[0], {n: p for n, p in planes.items() if not n.startswith("normal")})
+    refused("expected channels normal.X normal.Y normal.Z, found R G B", "denoise", frames, "-o", frames / "out")
+
+
+def test_fields_that_change_within_a_sequence(frames: Path, refused) -> None:
+    write_frame(frames / NAMES[1], replace(read_frame(frames / NAMES[1]), albedo=None))
+    refused("0001.exr: expected the fields of", "denoise", frames, "-o", frames / "out")
+    (frames / NAMES[1]).unlink()
+    refused("0001.exr: expected this frame between", "denoise", frames, "-o", frames / "out")
+
+
+def test_a_frame_of_nothing_but_nan(frames: Path, refused) -> None:
+    frame = read_frame(frames / NAMES[2])
+    write_frame(frames / NAMES[2], replace(frame, color=np.full_like(frame.color, np.nan)))
+    refused("0002.exr: expected finite values in color", "denoise", frames, "-o", frames / "out")
+
+
+def test_an_output_that_cannot_be_written(rendered: Path, tmp_path: Path, refused) -> None:
+    (tmp_path / "file").touch()
+    refused("cannot be made a folder", "denoise", rendered, "-o", tmp_path / "file" / "out")
+
+
+def test_denoise_never_replaces_its_input(rendered: Path, tmp_path: Path, refused) -> None:
+    refused("expected an output folder other than the input's", "denoise", rendered, "-o", rendered)
+    twice = (rendered / NAMES[0], rendered / NAMES[0])
+    refused("frames of different names", "denoise", *twice, "-o", tmp_path / "out")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [("sigma=1", "a name out of iterations,"), ("iterations=9", "in 1..5"), ("taa=maybe", "expected on or off"),
+     ("sigma_depth=wide", "expected a number in"), ("iterations=2.5", "expected a whole number in 1..5")],
+)  # fmt: skip
+def test_a_bad_setting(text: str, words: str, rendered: Path, tmp_path: Path, refused) -> None:
+    refused(words, "denoise", rendered, "-o", tmp_path, "--set", text)

@@ -1,0 +1,41 @@
+"""``svgf-cl demo`` as people use it."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.command_line import run
+
+
+def test_demo_prints_gain_times_and_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("demo", "--frames", "2", "--size", "32x18", "--reference-spp", "4", "-o", tmp_path) == 0
+    said = capsys.readouterr()
+    for words in ("device: ", "gain", "atrous 1", f"{tmp_path}/preview.webp"):
+        assert words in said.out
+    assert said.err == "", "no progress bar where stderr is no terminal"
+    assert (tmp_path / "still.0001.png").exists()
+
+
+def test_a_demo_too_small_to_be_measured(tmp_path: Path, refused) -> None:
+    refused("--size: expected at least 11x11 pixels", "demo", "--size", "8x8", "-o", tmp_path / "demo")
+    assert not (tmp_path / "demo").exists(), "refused before the long work, not after it"
+
+
+def test_an_output_that_cannot_be_written(tmp_path: Path, refused) -> None:
+    (tmp_path / "file").touch()
+    refused("cannot be made a folder", "demo", "-o", tmp_path / "file" / "out")
+
+
+def test_rendering_without_the_tracer_says_how_to_get_it(tmp_path: Path, refused, monkeypatch) -> None:
+    monkeypatch.setitem(sys.modules, "svgf_cl_tracer.api", None)
+    refused("pip install '.[tracer]'", "demo", "-o", tmp_path)
+
+
+def test_measuring_without_scikit_image_says_how_to_get_it(tmp_path: Path, refused, monkeypatch) -> None:
+    for module in ("skimage", "skimage.metrics"):
+        monkeypatch.setitem(sys.modules, module, None)
+    refused("pip install '.[metrics]'", "demo", "-o", tmp_path / "demo")
+    assert not (tmp_path / "demo").exists(), "refused before the long work, not after it"
