@@ -11,11 +11,15 @@ light as one signal. All of them accumulate light over time in the same way, so 
 What they make of the last two frames is compared with a path-traced truth, each pixel of which is the mean over the
 pixel's area. PSNR, SSIM, FLIP, relMSE and the temporal error: `svgf_cl.compare.metrics`.
 
-Sharpness of edges: the picture's gradient along that of the truth, where the truth's is strongest (`SHARE` of the
-pixels): sum(g . g_truth) / sum(g_truth . g_truth), of luminance as shown. 1 is as sharp as the truth, 0 is flat. Noise
-does not count as sharpness, as it has no direction in common with the truth. "edges" looks at the whole picture,
-"shadow edges" only where all 5x5 pixels around show one surface of one colour: what changes there is the light, and
-only the light's own weight can keep a filter from blurring it.
+Rays go through another point of the pixel in every frame, so edges of objects flicker whatever the filter, unless it
+has temporal antialiasing. Two figures therefore look at surfaces alone: at pixels around which 5x5 pixels show one
+object, turned the same way, of the same colour. What changes there is the light.
+
+- "temporal on surfaces": the temporal error there;
+- "edges" and "shadow edges": how sharp the strongest edges are, everywhere and on surfaces: the picture's gradient
+  along that of the truth, sum(g . g_truth) / sum(g_truth . g_truth), of luminance as shown, over the pixels where the
+  truth's gradient is strongest (`SHARE` of them). 100 % is as sharp as the truth, 0 % is flat. Noise hardly counts as
+  sharpness, as it has no direction in common with the truth.
 """
 
 from __future__ import annotations
@@ -38,7 +42,7 @@ from svgf_cl import Denoiser, Frame
 from svgf_cl.bench.tables import Table
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import parse_size
-from svgf_cl.compare.metrics import require_flip, require_ssim, ssim
+from svgf_cl.compare.metrics import require_flip, require_ssim, ssim, temporal_error
 from svgf_cl.device import devices
 from svgf_cl.filters import Eaw, Settings
 from svgf_cl.filters.filter import Filter
@@ -69,33 +73,30 @@ class Findings:
     ----------
     quality : Quality
     ssim : float
+    flicker : float
+        The temporal error on surfaces, as above.
     edges, shadow_edges : float
         Sharpness, as above.
     """
 
     quality: Quality
     ssim: float
+    flicker: float
     edges: float
     shadow_edges: float
 
     @property
     def row(self) -> list[str]:
         """As printed."""
+        shares = [f"{100 * share:.0f}" for share in (self.edges, self.shadow_edges)]
         errors = [f"{self.quality.psnr:.2f}", f"{self.ssim:.3f}", f"{self.quality.flip:.4f}"]
-        return [*errors, f"{self.quality.relmse:.4f}", f"{self.quality.temporal:.5f}", *map(percent, self.sharpness)]
-
-    @property
-    def sharpness(self) -> tuple[float, float]:
-        """Of both kinds of edges."""
-        return self.edges, self.shadow_edges
+        return [*errors, f"{self.quality.relmse:.4f}", f"{self.quality.temporal:.5f}", f"{self.flicker:.5f}", *shares]
 
 
-COLUMNS = ("PSNR dB ↑", "SSIM ↑", "FLIP ↓", "relMSE ↓", "temporal ↓", "edges % ↑", "shadow edges % ↑")
-
-
-def percent(share: float) -> str:
-    """A share as printed."""
-    return f"{100 * share:.0f}"
+COLUMNS = (
+    *("PSNR dB ↑", "SSIM ↑", "FLIP ↓", "relMSE ↓"),
+    *("temporal ↓", "temporal on surfaces ↓", "edges % ↑", "shadow edges % ↑"),
+)
 
 
 def filters(
@@ -188,9 +189,17 @@ def judged(pictures: Sequence[Linear], truth: Sequence[Linear], surfaces: Sequen
     return Findings(
         quality(pictures, truth),
         float(np.mean([ssim(*pair) for pair in shown])),
+        flicker(shown, surfaces),
         float(np.mean([sharpness(*pair, np.ones(pair[0].shape[:2], np.bool_)) for pair in shown])),
         float(np.mean([sharpness(*pair, surface) for pair, surface in zip(shown, surfaces, strict=True)])),
     )
+
+
+def flicker(shown: Sequence[tuple[Linear, Linear]], surfaces: Sequence[Mask]) -> float:
+    """The temporal error of two display-referred pictures, each beside its truth, where both show a surface alone."""
+    (earlier, later), where = shown, surfaces[0] & surfaces[1]
+    pictures, truths = ((first[where], second[where]) for first, second in zip(earlier, later, strict=True))
+    return temporal_error(pictures, truths) if where.any() else float("nan")
 
 
 def sharpness(shown: Linear, wanted: Linear, where: Mask) -> float:
@@ -215,10 +224,11 @@ def gradient(shown: Linear) -> NDArray[np.float64]:
 
 def one_surface(frame: Frame) -> Mask:
     """Where a pixel and all 24 around it show the same object, turned the same way, of the same colour."""
-    same: Mask = frame.depth < np.inf
+    hit: Mask = frame.depth < np.inf
+    same: Mask = hit.copy()
     for offset in square(2):
         y, x, inside = shifted(offset, frame.shape)
-        same &= inside & (frame.id[y, x] == frame.id)
+        same &= inside & hit[y, x] & (frame.id[y, x] == frame.id)
         same &= (frame.normal[y, x] * frame.normal).sum(axis=-1) > SAME_NORMAL
         same &= np.abs(frame.albedo[y, x] - frame.albedo).max(axis=-1) < SAME_ALBEDO
     return same
