@@ -31,10 +31,11 @@ bench: device  ## time every kernel on every device, beside rival and error; rep
 	-$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[dev,cpu,oidn]'
 	$(BIN)/python -m benchmarks --output out/bench
 
-docs: demo implementations  ## make docs/accuracy.md, docs/scene_description.md and the pictures of README and of the built-in scenes again
+docs: demo implementations  ## make docs/accuracy.md, docs/scene_description.md, the tables of docs/algorithm.md and all pictures again
 	$(BIN)/python -m benchmarks.accuracy_page docs/accuracy.md
 	$(BIN)/python scripts/picture.py
 	$(BIN)/python scripts/scene_description.py
+	$(BIN)/python scripts/pass_table.py
 	$(BIN)/svgf-cl scenes -o docs/builtin_scenes.webp --size 320x180 --spp 128
 
 clean:  ## remove what the other targets made
