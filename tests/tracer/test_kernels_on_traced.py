@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from svgf_cl import Denoiser, Settings
-from svgf_cl.oracle.svgf import Reference
+from svgf_cl.oracle.svgf import Oracle
 from tests.frames import FULL, SPLIT
 from tests.kernels.test_storage import BOUNDS, error_to_the_oracle
 from tests.oracle import Case, assert_case_follows_oracle
@@ -45,6 +45,6 @@ def test_error_of_what_saves_time_or_memory(choice: dict[str, Any], bound: float
 @pytest.mark.parametrize(("fields", "chosen"), [(FULL, Settings()), (SPLIT, Settings(taa=True))], ids=["full", "split"])
 def test_errors_do_not_build_up_over_a_sequence(fields: tuple[str, ...], chosen: Settings) -> None:
     frames = traced_sequence(fields, count=8)
-    den, oracle = Denoiser(frames[0].shape, settings=chosen), Reference(frames[0].shape, chosen)
+    den, oracle = Denoiser(frames[0].shape, settings=chosen), Oracle(frames[0].shape, chosen)
     for frame in frames:
         assert_alike(den.denoise(frame), oracle.denoise(frame))
