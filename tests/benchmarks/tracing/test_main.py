@@ -44,7 +44,7 @@ def refused(run: Run, capsys: pytest.CaptureFixture[str]) -> Callable[..., None]
 def test_help_has_an_example(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("--help") == 0
     said = capsys.readouterr().out
-    assert "Usage: python -m benchmarks.tracing [OPTIONS] [SCENE]" in said
+    assert "Usage: python -m benchmarks.tracing [OPTIONS]" in said
     assert "python -m benchmarks.tracing" in said.split("Examples:")[1]
 
 
