@@ -11,11 +11,12 @@ import pytest
 
 from svgf_cl import Denoiser, Frame, Settings, Tuning
 from svgf_cl.device import tuning
+from svgf_cl.filters.filter import Filter
 
 
-def feed(*frames: Frame, **chosen: Any) -> tuple[np.ndarray, Denoiser]:
+def feed(*frames: Frame, kind: type[Filter] = Settings, **chosen: Any) -> tuple[np.ndarray, Denoiser]:
     """Denoise a sequence with these settings: the last picture, and the denoiser with all stages of that frame."""
-    den = Denoiser(frames[0].shape, settings=Settings(**chosen), keep_stages=True)
+    den = Denoiser(frames[0].shape, settings=kind(**chosen), keep_stages=True)
     return [den.denoise(frame) for frame in frames][-1], den
 
 

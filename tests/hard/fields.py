@@ -6,11 +6,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from svgf_cl import Frame
-from svgf_cl.frame import REQUIRED
-from tests.hard.variants import VARIANTS
 
 Change = Callable[[np.ndarray], np.ndarray]
 Spoil = Callable[[float, np.ndarray], np.ndarray]
@@ -31,15 +28,3 @@ def some_pixels(value: float, field: np.ndarray) -> np.ndarray:
 
 def with_field(frame: Frame, name: str, change: Change) -> Frame:
     return replace(frame, **{name: change(getattr(frame, name))})
-
-
-every_field = pytest.mark.parametrize(
-    ("variant", "name"),
-    [
-        pytest.param(variant, name, id=f"{variant}, {name}")
-        for variant, chosen in VARIANTS.items()
-        for name in (*REQUIRED, *chosen.fields)
-        if name != "id"
-    ],
-    indirect=["variant"],
-)

@@ -10,7 +10,10 @@ import pytest
 
 from svgf_cl import Frame
 from tests.frames import SHAPE, bumpy_sequence
-from tests.hard.variants import Variant
+from tests.hard.variants import Variant, on
+
+# Depth goes into weights, and into what TAA calls the foremost; it is kept in 32 bits whatever the storage.
+variants = on("precise", "precise, two signals, TAA", "fast")
 
 NEAREST, FARTHEST = 1e-6, 1e9
 
@@ -39,6 +42,7 @@ def two_layers(rng: np.random.Generator) -> np.ndarray:
 
 
 @pytest.mark.parametrize("depths", [receding, scattered, two_layers])
+@variants
 def test_all_in_one_picture(variant: Variant, depths: Callable[[np.random.Generator], np.ndarray]) -> None:
     rng = np.random.default_rng(7)
     frames = bumpy_sequence(variant.fields)

@@ -8,13 +8,19 @@ from numpy.testing import assert_allclose
 
 from svgf_cl import Frame
 from tests.frames import FACING, SHAPE, TINY
-from tests.hard.variants import Variant
+from tests.hard.variants import Variant, on
+
+# Storage ends at 65504, TAA compresses, and weights have to tell light that bright: each way to do so, once.
+variants = on("precise", "precise, two signals, TAA", "fp16", "fast")
+# A share of the new frame decays alike whatever the levels' weights: these spread it.
+of_decay = on("precise", "precise, two signals, TAA", "fp16")
 
 # All that is not taken for garbage (test_not_finite.py).
 every_firefly = pytest.mark.parametrize("firefly", [1e4, 1e7, 1e10])
 
 
 @every_firefly
+@variants
 def test_follows_the_oracle(variant: Variant, firefly: float) -> None:
     rng = np.random.default_rng(0)
     frames = [variant.wall(rng.exponential(0.5, (*SHAPE, 3)) + firefly * spot(age == 2)) for age in range(8)]
@@ -29,6 +35,7 @@ def spot(lit: bool, at: tuple[int, int] = (20, 18)) -> np.ndarray:
 
 
 @every_firefly
+@of_decay
 def test_decays_by_its_share_in_every_frame(variant: Variant, firefly: float) -> None:
     """No pixel holds more of it than alpha_color (1 - alpha_color)^age, however the filter spreads it."""
     light = 0.5
@@ -43,6 +50,7 @@ def test_decays_by_its_share_in_every_frame(variant: Variant, firefly: float) ->
 
 
 @every_firefly
+@variants
 def test_lights_no_other_surface(variant: Variant, firefly: float) -> None:
     left = np.arange(SHAPE[1])[:, None] < 19
     normal = np.where(left, FACING, (1.0, 0.0, 0.0))

@@ -10,7 +10,12 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from svgf_cl import Frame
 from tests.frames import SHAPE, bumpy_sequence, only
-from tests.hard.variants import Variant
+from tests.hard.variants import Variant, on
+
+# Storage in 16 bits fetches history in a way of its own, and so does TAA; weights (fast) know nothing of motion.
+variants = on("precise", "precise, two signals, TAA", "fp16, two signals, TAA")
+# The length of history is kept, and TAA and the signals share it.
+of_lengths = on("precise", "fp16")
 
 HEIGHT, WIDTH = SHAPE
 LARGEST = float(np.finfo(np.float32).max)
@@ -50,6 +55,7 @@ every_motion = pytest.mark.parametrize("motion", [wrong, huge, tiny, to_the_bord
 
 
 @every_motion
+@variants
 def test_follows_the_oracle(variant: Variant, motion) -> None:
     """In a third of the pixels, so that vectors hold both kinds."""
     rng = np.random.default_rng(11)
@@ -59,6 +65,7 @@ def test_follows_the_oracle(variant: Variant, motion) -> None:
 
 
 @every_motion
+@variants
 def test_even_light_stays_as_it_is(variant: Variant, motion) -> None:
     rng = np.random.default_rng(11)
     frames = [with_motion(variant.wall(0.3), motion(rng)) for _ in range(4)]
@@ -67,6 +74,7 @@ def test_even_light_stays_as_it_is(variant: Variant, motion) -> None:
 
 
 @every_motion
+@variants
 def test_other_pixels_keep_their_history(variant: Variant, motion) -> None:
     rng = np.random.default_rng(11)
     first, second = bumpy_sequence(variant.fields, count=2)
@@ -82,6 +90,7 @@ def test_other_pixels_keep_their_history(variant: Variant, motion) -> None:
         assert_allclose(stages[1][name][good], expected[good], rtol=2 * variant.rounding)
 
 
+@of_lengths
 def test_huge_motion_leaves_no_history(variant: Variant) -> None:
     den = variant.denoiser()
     for _ in range(3):
@@ -90,6 +99,7 @@ def test_huge_motion_leaves_no_history(variant: Variant) -> None:
 
 
 @pytest.mark.parametrize("change", [1e30, -1e30, LARGEST, -LARGEST, 1.0, -4.0, -5.0])
+@of_lengths
 def test_so_does_a_change_of_depth_that_did_not_happen(variant: Variant, change: float) -> None:
     den = variant.denoiser()
     for _ in range(3):

@@ -10,7 +10,12 @@ from numpy.testing import assert_allclose
 
 from svgf_cl import Frame
 from svgf_cl.frame import Shape
-from tests.hard.variants import Variant
+from tests.hard.variants import Variant, on
+
+# Ghosts come of history, of light and of TAA, and of weights that let light through; depths are never rounded.
+variants = on("precise", "precise, two signals, TAA", "fast")
+# Whether history is taken up again is decided before the levels.
+of_history = on("precise", "precise, two signals, TAA")
 
 SHAPE: Shape = (24, 72)
 WALL, CARD = 4.0, 3.8  # depths: 5 % are all that tells the card from the wall, whose normal and id are the same
@@ -53,6 +58,7 @@ every_speed = pytest.mark.parametrize("speed", [0.5, 1.0, 2.5])
 
 @every_width
 @every_speed
+@variants
 def test_even_light_stays_apart(variant: Variant, width: int, speed: float) -> None:
     """To rounding; but antialiasing mixes what meets at an edge."""
     pictures = variant.pictures(frames(variant, width, speed), SHAPE)
@@ -66,6 +72,7 @@ def test_even_light_stays_apart(variant: Variant, width: int, speed: float) -> N
 
 @every_width
 @every_speed
+@of_history
 def test_of_noisy_light_a_hundredth_is_left_at_most(variant: Variant, width: int, speed: float) -> None:
     """Where the card was in the four frames before; measured: 3e-3, and 2e-4 without antialiasing. The wall's own light
     is back, but for up to 3 % that the filter takes off so skewed a noise.

@@ -10,12 +10,20 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from svgf_cl import Frame
 from tests.frames import FACING, SHAPE, bumpy_sequence, noise
-from tests.hard.variants import Variant
+from tests.hard.variants import Variant, on
+
+# Light of any strength goes through storage, weights and TAA, and each ends or rounds somewhere else: each once.
+variants = on("precise", "precise, two signals, TAA", "fp16", "fast")
+# Without TAA, and alike for every signal.
+of_linear = on("precise", "fp16", "fast")
+# Made safe as it comes in, before it is stored or weighed; each signal for itself.
+of_input = on("precise", "precise, two signals, TAA")
 
 # Number of the tile, 8x8 pixels, that each pixel lies in, (H, W, 1).
 TILE = (np.indices(SHAPE).transpose(1, 2, 0) // 8) @ ((5,), (1,))
 
 
+@variants
 def test_light_of_16_orders_of_magnitude_follows_the_oracle(variant: Variant) -> None:
     rng = np.random.default_rng(1)
     frames = [variant.wall(10 ** rng.uniform(-8, 8, (*SHAPE, 3))) for _ in range(4)]
@@ -36,9 +44,11 @@ class TestDimBesideBright:
         rng = np.random.default_rng(3)
         return [variant.wall(light * rng.uniform(0.9, 1.1, (*SHAPE, 1)), **surface) for _ in range(5)]
 
+    @variants
     def test_follows_the_oracle(self, variant: Variant, frames: list[Frame]) -> None:
         variant.assert_follows_oracle(frames)
 
+    @of_linear
     def test_each_tile_keeps_its_own_light(self, variant: Variant, frames: list[Frame], light: np.ndarray) -> None:
         *_, last = variant.linear.pictures(frames)
         held = (light > 100 * variant.least) & (light < variant.greatest) & np.ones(3, bool)
@@ -46,6 +56,7 @@ class TestDimBesideBright:
 
 
 @pytest.mark.parametrize("scale", [2.0**-8, 2.0**8])
+@of_linear
 def test_exposure_scales_the_picture_and_nothing_else(variant: Variant, scale: float) -> None:
     rng = np.random.default_rng(4)
     lights = [rng.exponential(0.5, (*SHAPE, 3)) for _ in range(5)]
@@ -55,15 +66,18 @@ def test_exposure_scales_the_picture_and_nothing_else(variant: Variant, scale: f
         assert variant.errors(got, scale * expected).max() <= variant.error
 
 
+@variants
 def test_darkness_stays_dark(variant: Variant) -> None:
     for picture in variant.pictures([variant.wall(0)] * 4):
         assert_array_equal(picture, 0)
 
 
+@variants
 def test_light_comes_back_after_darkness(variant: Variant) -> None:
     variant.assert_follows_oracle([*[variant.wall(0)] * 6, *[variant.wall(noise())] * 3])
 
 
+@of_input
 def test_negative_light_is_none(variant: Variant) -> None:
     """To the bit, in each channel, and in all later frames."""
     frames = bumpy_sequence(variant.fields)

@@ -8,7 +8,14 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from svgf_cl import Frame
 from tests.frames import FACING, SHAPE, noise
-from tests.hard.variants import Variant
+from tests.hard.variants import Variant, on
+
+# Normals are stored and weighed, in each way once; TAA, which takes in neighbours, must not take in the sky.
+variants = on("precise", "precise, two signals, TAA", "fp16", "fast")
+# Without TAA, and alike for every signal.
+of_linear = on("precise", "fp16", "fast")
+# The length of history is kept, and TAA and the signals share it.
+of_lengths = on("precise", "fp16")
 
 ABOVE = np.indices(SHAPE)[0] < 20  # where the sky is
 
@@ -20,11 +27,13 @@ class TestSky:
         return 10 ** np.random.default_rng(0).uniform(-2, 4, (*SHAPE, 3))
 
     @pytest.mark.parametrize("miss", [{"depth": np.inf}, {"depth": 0}, {"depth": 3e38}, {"normal": 0}], ids=str)
+    @of_linear
     def test_passes_through(self, variant: Variant, light: np.ndarray, miss: dict) -> None:
         for picture in variant.linear.pictures([variant.wall(light, **miss)] * 3):
             assert variant.errors(picture, light).max() <= 4 * variant.rounding
 
     @pytest.mark.parametrize("sky", [1e4, 1e10])
+    @variants
     def test_leaves_the_ground_alone(self, variant: Variant, sky: float) -> None:
         """To the bit; but antialiasing looks at the pixels next to it."""
         ground = ~ABOVE if not variant.settings.taa else np.indices(SHAPE)[0] > 20
@@ -38,6 +47,7 @@ class TestSky:
         for got, expected in zip(variant.pictures(under(sky)), variant.pictures(under(0.0)), strict=True):
             assert_array_equal(got[ground], expected[ground])
 
+    @of_linear
     def test_is_left_alone_by_the_ground(self, variant: Variant, light: np.ndarray) -> None:
         lights = np.where(ABOVE[..., None], light, 1e10)
         for picture in variant.linear.pictures([variant.wall(lights, depth=np.where(ABOVE, np.inf, 4.0))] * 3):
@@ -45,6 +55,7 @@ class TestSky:
 
 
 class TestNormals:
+    @of_linear
     def test_length_does_not_matter(self, variant: Variant) -> None:
         rng = np.random.default_rng(2)
         normal = FACING + rng.normal(0, 0.1, (*SHAPE, 3))
@@ -56,6 +67,7 @@ class TestNormals:
         for got, expected in zip(stretched, unit, strict=True):
             assert variant.errors(got, expected).max() <= variant.error
 
+    @variants
     def test_none_is_nothing_hit(self, variant: Variant) -> None:
         nothing = np.where(noise()[..., :1] < 0.2, 0.0, FACING)
         missed = np.where(nothing.any(axis=-1), 4.0, np.inf)
@@ -87,15 +99,18 @@ class TestGrazing:
         rng = np.random.default_rng(4)
         return [self.floor(variant, rng.exponential(0.5, (*SHAPE, 1))) for _ in range(8)]
 
+    @variants
     def test_follows_the_oracle(self, variant: Variant, frames: list[Frame]) -> None:
         variant.assert_follows_oracle(frames)
 
+    @of_lengths
     def test_keeps_its_history(self, variant: Variant, frames: list[Frame]) -> None:
         den = variant.denoiser()
         for frame in frames:
             den.denoise(frame)
         assert np.mean(den.stage("history_length")[10:] > 7) > 0.95
 
+    @variants
     def test_is_filtered(self, variant: Variant, frames: list[Frame]) -> None:
         """To a tenth of the noise, whose deviation is 0.5, as far as the last rows before the horizon."""
         *_, last = variant.pictures(frames)

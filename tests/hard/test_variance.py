@@ -6,13 +6,17 @@ import numpy as np
 import pytest
 
 from svgf_cl.oracle.svgf import Oracle
-from tests.hard.variants import Variant
+from tests.hard.variants import Variant, on
+
+# Moments are kept of each signal, in 32 bits or 16; the levels (fast) and TAA come after them.
+variants = on("precise", "precise, two signals, TAA", "fp16")
 
 STEADY = 1e4
 SHAPE = (12, 40)
 
 
 @pytest.mark.parametrize("noise", [1e-1, 1e-2, 1e-3, 1e-4])
+@variants
 def test_deviation_of_steady_light_is_off_by_a_rounding_of_it(variant: Variant, noise: float) -> None:
     """The paper's raw moments are off by more than the deviation at a noise of 1e-4: docs/accuracy.md."""
     den, oracle = variant.denoiser(SHAPE), Oracle(SHAPE, variant.settings)

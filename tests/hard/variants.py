@@ -1,4 +1,7 @@
-"""The ways to run the filter that every hard case goes through, and how far each may lie off the oracle."""
+"""The ways to run the filter, of which each hard case goes through those that can change its outcome.
+
+Each file says at its top which these are and why, in `on(...)`. And how far each may lie off the oracle.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +10,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import pytest
 
 from svgf_cl import Denoiser, Frame, Settings
-from svgf_cl.frame import Shape
+from svgf_cl.frame import REQUIRED, Shape
 from svgf_cl.oracle.accuracy import largest_channel
 from svgf_cl.oracle.svgf import Oracle
 from tests.frames import FULL, SHAPE, SPLIT, only, wall
@@ -110,3 +114,19 @@ VARIANTS = {
     "fast": Variant(Settings(precision="fast"), 1, **FAST),
     "fast, two signals, TAA": Variant(Settings(precision="fast", taa=True), 2, **FAST),
 }
+
+
+def on(*names: str) -> pytest.MarkDecorator:
+    """Mark a test that goes through these variants."""
+    return pytest.mark.parametrize("variant", names, indirect=True)
+
+
+def on_each_field(*names: str) -> pytest.MarkDecorator:
+    """Mark a test that goes through each field of float32, as `name`, of the frames of these variants."""
+    cases = [
+        pytest.param(variant, name, id=f"{variant}, {name}")
+        for variant in names
+        for name in (*REQUIRED, *VARIANTS[variant].fields)
+        if name != "id"
+    ]
+    return pytest.mark.parametrize(("variant", "name"), cases, indirect=["variant"])

@@ -7,11 +7,12 @@ from typing import Any
 
 import pytest
 
-from svgf_cl import Denoiser, Settings
+from svgf_cl import Denoiser, Eaw, Settings
 from svgf_cl.oracle.svgf import Oracle
 from tests.frames import FULL, SPLIT
+from tests.kernels import test_eaw
 from tests.kernels.test_storage import BOUNDS, error_to_the_oracle
-from tests.oracle import Case, assert_case_follows_oracle
+from tests.oracle import EAW_TOLERANCES, Case, assert_case_follows_oracle
 from tests.svgf_cl.test_denoiser import assert_alike
 from tests.tracer.frames import traced_sequence
 
@@ -31,6 +32,16 @@ STAGES = {
 @pytest.mark.parametrize("case", CASES)
 def test_follows_the_oracle(case: str, kernel: str) -> None:
     assert_case_follows_oracle(CASES[case], *STAGES[kernel])
+
+
+def test_eaw_follows_the_oracle() -> None:
+    case = Case(partial(traced_sequence, SPLIT), Eaw(taa=True, taps="5x5"))
+    assert_case_follows_oracle(case, *EAW_TOLERANCES)
+
+
+@pytest.mark.parametrize(("choice", "bound"), test_eaw.BOUNDS, ids=["halves", "fast", "halves and fast"])
+def test_error_of_what_saves_time_or_memory_in_eaw(choice: dict[str, Any], bound: float) -> None:
+    assert test_eaw.error_to_the_oracle(traced_sequence(FULL), choice) <= bound
 
 
 def test_antialiasing_follows_the_oracle() -> None:

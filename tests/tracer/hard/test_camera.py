@@ -12,7 +12,14 @@ from numpy.testing import assert_array_equal
 from svgf_cl import Frame
 from svgf_cl_tracer import Camera, CameraPath, Shot, builtin_scene, render_sequence
 from tests.frames import only
-from tests.hard.variants import Variant
+from tests.hard.variants import Variant, on
+
+# Where history is found depends on stored normals, and TAA looks for its own; the levels' weights (fast) come after.
+variants = on("precise", "precise, two signals, TAA", "fp16, two signals, TAA")
+# The length of history is kept, and TAA and the signals share it.
+of_lengths = on("precise", "fp16")
+# What is forgotten is the same however it was kept; TAA has a past of its own.
+of_forgetting = on("precise", "precise, two signals, TAA")
 
 SHAPE = (54, 96)
 MIDDLE = (0.0, 0.95, -0.6)  # of the box
@@ -49,10 +56,12 @@ def moved(name: str) -> tuple[Frame, ...]:
 
 class TestMove:
     @pytest.mark.parametrize("move", MOVES)
+    @variants
     def test_follows_the_oracle(self, variant: Variant, move: str) -> None:
         variant.assert_follows_oracle([only(frame, variant.fields) for frame in moved(move)], SHAPE)
 
     @pytest.mark.parametrize("move", MOVES)
+    @of_lengths
     def test_keeps_the_history_of_what_was_in_the_frame(self, variant: Variant, move: str) -> None:
         """All but what the ball, the blocks and the bars covered: 96 to 100 % of the pixels were measured."""
         frames = moved(move)
@@ -80,6 +89,7 @@ def lit(variant: Variant, frame: Frame, light: tuple[float, float, float]) -> Fr
 
 @pytest.mark.parametrize("after", AFTER)
 class TestCut:
+    @of_forgetting
     def test_after_reset_nothing_is_left(self, variant: Variant, after: str) -> None:
         den = variant.denoiser(SHAPE)
         for frame in filmed(*BEFORE):
@@ -89,6 +99,7 @@ class TestCut:
         for frame, expected in zip(shot, variant.pictures(shot, SHAPE), strict=True):
             assert_array_equal(den.denoise(frame), expected)
 
+    @of_forgetting
     def test_without_reset_red_light_stays_where_the_same_surface_seems_to_be_seen(
         self, variant: Variant, after: str
     ) -> None:

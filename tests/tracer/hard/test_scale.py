@@ -9,8 +9,11 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from svgf_cl import Frame
-from tests.hard.variants import Variant
+from tests.hard.variants import Variant, on
 from tests.tracer.frames import traced_sequence
+
+# Depth enters weights and TAA's choice of the foremost; what is kept in 16 bits has no unit of length.
+variants = on("precise", "precise, two signals, TAA", "fast")
 
 # A depth in another unit is rounded otherwise, by 2^-24, and edges are told by 1e-3 of it or less. Three times what was
 # measured, beside what rounding of the light adds.
@@ -28,11 +31,13 @@ def pictures(variant: Variant, scale: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("scale", [2.0**-20, 2.0**30])
+@variants
 def test_powers_of_two_change_no_bit(variant: Variant, scale: float) -> None:
     assert_array_equal(pictures(variant, scale), pictures(variant, 1))
 
 
 @pytest.mark.parametrize("scale", [1e-6, 1e-3, 1e3, 1e9])
+@variants
 def test_other_scales_change_no_more_than_rounding(variant: Variant, scale: float) -> None:
     off = variant.errors(pictures(variant, scale), pictures(variant, 1))
     assert off.max() <= CHANGE + 5 * variant.rounding
