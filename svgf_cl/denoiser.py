@@ -6,6 +6,7 @@ import math
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -83,7 +84,8 @@ class Denoiser:
         self._queue = check_queue(queue)
         self._tuning = check_tuning(tuning, self._queue.device)
         self._after_pass = after_pass
-        self._workplace = self._work_in(self._shape, keep_stages)
+        layout = layout_of(self._shape, self._tuning, self._settings)
+        self._workplace = Workplace(held(self._queue), layout, self._tuning, keep_stages)
         self._arrays: UserArrays | None = UserArrays(self._workplace.queue)
         self._plan: Plan | None = None
         self._inputs: Inputs | None = None
@@ -142,10 +144,10 @@ class Denoiser:
         """
         if not isinstance(frame, Frame):
             raise SvgfError(f"denoise(frame): expected a Frame, got {type(frame).__name__}")
-        frame.check(self._shape)
-        if out is not None:
-            check_out(out, (*self._shape, 3))
         with self._in_turn() as arrays:
+            frame.check(self._shape)
+            if out is not None:
+                check_out(out, (*self._shape, 3))
             with self._opencl_errors("denoise", NOT_BEGUN):
                 inputs = Inputs.of(frame)
                 plan = self._ready(inputs)
@@ -188,6 +190,7 @@ class Denoiser:
         """
         check_filter(settings)
         with self._in_turn(), self._opencl_errors("update", UNCHANGED):
+            layout_of(self._shape, self._tuning, settings)  # whose buffers may be larger
             rebuilt = False
             if self._plan and self._inputs:
                 pipeline = settings.pipeline(self._inputs)
@@ -206,7 +209,8 @@ class Denoiser:
         """Go on with frames of another (height, width): a cut, but with the kernels that are built already."""
         shape = check_shape(shape)
         with self._in_turn():
-            self._workplace = self._work_in(shape, self._workplace.keeps_stages)
+            layout = layout_of(shape, self._tuning, self._settings)
+            self._workplace = replace(self._workplace, layout=layout)
             self._shape, self._plan = shape, None
             self._cut()
 
@@ -296,11 +300,6 @@ class Denoiser:
     def _opencl_errors(self, what: str, then: str) -> Iterator[None]:
         with opencl_errors(self._workplace.queue.device, what, then):
             yield
-
-    def _work_in(self, shape: Shape, keep_stages: bool) -> Workplace:
-        widest = self._settings.pipeline(Inputs.every()).widest
-        layout = layout_of(shape, self._tuning.row_alignment, widest)
-        return Workplace(held(self._queue), layout, self._tuning, keep_stages)
 
     def _ready(self, inputs: Inputs) -> Plan:
         """The plan for these inputs; a new one where they changed at a cut."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 import warnings
 
@@ -78,9 +79,10 @@ def check_shape(shape: Shape) -> Shape:
     return height, width
 
 
-def layout_of(shape: Shape, row_alignment: int, planes: int) -> Layout:
-    """The layout of an image; `SvgfError` where kernels' indices do not reach all of a buffer of so many planes."""
-    layout = Layout(*shape, row_alignment)
+def layout_of(shape: Shape, tuning: Tuning, settings: Filter) -> Layout:
+    """The layout of an image; `SvgfError` where kernels' indices do not reach all of the filter's largest buffer."""
+    layout, planes = Layout(*shape, tuning.row_alignment), settings.pipeline(Inputs.every()).widest
     if not layout.indexable(planes):
-        raise SvgfError(f"Denoiser: expected an image of at most about 16000 x 16000 pixels, got {shown(shape)}")
+        side = math.isqrt(2**31 // planes) // 1000 * 1000
+        raise SvgfError(f"Denoiser: expected an image of at most about {side} x {side} pixels, got {shown(shape)}")
     return layout
