@@ -22,7 +22,7 @@ for package in (svgf_cl, svgf_cl_tracer):
     assert package.__file__.startswith(sys.argv[1]), package.__file__
 assert commands()["render"].__module__ == "svgf_cl_tracer.cli.render"
 queue = devices.default_queue()
-macros = dict(VW=4, SIGNALS=1, MOTION=2, HAS_ALBEDO=0, HAS_EMISSION=0, HAS_ID=0, TAA=0, FAST=0, RADIUS=2)
+macros = {"VW": 4, **svgf_cl.Settings().pipeline(svgf_cl.Inputs()).defines}
 print(programs.build(queue.context, queue.device, "variance", macros).kernel_names)
 """
 

@@ -80,8 +80,22 @@ def test_denoise_never_replaces_its_input(rendered: Path, tmp_path: Path, refuse
 
 @pytest.mark.parametrize(
     ("text", "words"),
-    [("sigma=1", "a name out of iterations,"), ("iterations=9", "in 1..5"), ("taa=maybe", "expected on or off"),
+    [("sigma=1", "a name out of alpha_color,"), ("iterations=9", "in 1..5"), ("taa=maybe", "expected on or off"),
      ("sigma_depth=wide", "expected a number in"), ("iterations=2.5", "expected a whole number in 1..5")],
 )  # fmt: skip
 def test_a_bad_setting(text: str, words: str, rendered: Path, tmp_path: Path, refused) -> None:
     refused(words, "denoise", rendered, "-o", tmp_path, "--set", text)
+
+
+def test_another_filter(rendered: Path, tmp_path: Path, run) -> None:
+    assert run("denoise", rendered, "-o", tmp_path / "eaw", "--filter", "eaw", "--set", "sigma_color=2") == 0
+    assert run("denoise", rendered, "-o", tmp_path / "svgf") == 0
+    for name in NAMES:
+        one, other = (read_picture(tmp_path / kind / name) for kind in ("eaw", "svgf"))
+        assert one.shape == other.shape
+        assert (one != other).any()
+
+
+def test_a_filter_that_is_none(rendered: Path, tmp_path: Path, refused) -> None:
+    refused("--filter: expected svgf or eaw, got 'nlm'", "denoise", rendered, "-o", tmp_path, "--filter", "nlm")
+    refused("a name out of", "denoise", rendered, "-o", tmp_path, "--filter", "eaw", "--set", "sigma_luminance=1")
