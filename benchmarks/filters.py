@@ -15,7 +15,7 @@ Rays go through another point of the pixel in every frame, so edges of objects f
 has temporal antialiasing. Two figures therefore look at surfaces alone: at pixels around which 5x5 pixels show one
 object, turned the same way, of the same colour. What changes there is the light.
 
-- "flicker on surfaces": how much the error there changes from frame to frame, root mean square, of all channels as shown.
+- "flicker on surfaces": how much the error there changes from frame to frame, root mean square, of what is shown.
   The truth's own noise, which is most of the temporal error, is not in it;
 - "edges" and "shadow edges": how sharp the strongest edges are, everywhere and on surfaces: the picture's gradient
   along that of the truth, sum(g . g_truth) / sum(g_truth . g_truth), of luminance as shown, over the pixels where the
@@ -191,7 +191,7 @@ def judged(pictures: Sequence[Linear], halves: Sequence[Pair], surfaces: Sequenc
     truth = [0.5 * (first + second) for first, second in halves]
     shown = [(display(picture), display(wanted)) for picture, wanted in zip(pictures, truth, strict=True)]
     (earlier, _), (later, _) = shown
-    earlier_halves, later_halves = (tuple(map(display, pair)) for pair in halves)
+    earlier_halves, later_halves = ((display(first), display(second)) for first, second in halves)
     return Findings(
         quality(pictures, truth),
         float(np.mean([ssim(*pair) for pair in shown])),
@@ -212,7 +212,8 @@ def flicker(shown: Pair, halves: tuple[Pair, Pair], where: Mask) -> float:
     where there is nothing to look at.
     """
     first, second = ((shown[1] - shown[0] - (half[1] - half[0]))[where] for half in halves)
-    return float(np.sqrt(max(np.mean(first * second), 0.0))) if where.any() else float("nan")
+    squared = float(np.mean(first * second)) if where.any() else float("nan")
+    return float(np.sqrt(np.maximum(squared, 0.0)))
 
 
 def sharpness(shown: Linear, wanted: Linear, where: Mask) -> float:
