@@ -15,7 +15,8 @@ Rays go through another point of the pixel in every frame, so edges of objects f
 has temporal antialiasing. Two figures therefore look at surfaces alone: at pixels around which 5x5 pixels show one
 object, turned the same way, of the same colour. What changes there is the light.
 
-- "temporal on surfaces": the temporal error there;
+- "flicker on surfaces": how much the error there changes from frame to frame, root mean square, of what is shown.
+  The truth's own noise, which is most of the temporal error, is not in it;
 - "edges" and "shadow edges": how sharp the strongest edges are, everywhere and on surfaces: the picture's gradient
   along that of the truth, sum(g . g_truth) / sum(g_truth . g_truth), of luminance as shown, over the pixels where the
   truth's gradient is strongest (`SHARE` of them). 100 % is as sharp as the truth, 0 % is flat. Noise hardly counts as
@@ -42,7 +43,7 @@ from svgf_cl import Denoiser, Frame
 from svgf_cl.bench.tables import Table
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import parse_size
-from svgf_cl.compare.metrics import require_flip, require_ssim, ssim, temporal_error
+from svgf_cl.compare.metrics import require_flip, require_ssim, ssim
 from svgf_cl.device import devices
 from svgf_cl.filters import Eaw, Settings
 from svgf_cl.filters.filter import Filter
@@ -62,6 +63,7 @@ SAME_NORMAL = 0.9  # cosine from which two pixels show one surface
 SAME_ALBEDO = 0.02
 
 Mask = NDArray[np.bool_]
+Pair = tuple[Linear, Linear]  # of two consecutive frames
 Pictures = dict[str, list[Linear]]
 
 
@@ -74,7 +76,7 @@ class Findings:
     quality : Quality
     ssim : float
     flicker : float
-        The temporal error on surfaces, as above.
+        On surfaces, as above.
     edges, shadow_edges : float
         Sharpness, as above.
     """
@@ -95,7 +97,7 @@ class Findings:
 
 COLUMNS = (
     *("PSNR dB ↑", "SSIM ↑", "FLIP ↓", "relMSE ↓"),
-    *("temporal ↓", "temporal on surfaces ↓", "edges % ↑", "shadow edges % ↑"),
+    *("temporal ↓", "flicker on surfaces ↓", "edges % ↑", "shadow edges % ↑"),
 )
 
 
@@ -149,9 +151,10 @@ def compared(
     footage: Footage, chosen: Mapping[str, Filter], advance: Callable[[], None]
 ) -> tuple[Table, dict[str, Linear]]:
     """Judge every filter on one footage: a table, and the last picture of each, the truth behind them."""
-    truth = [0.5 * (first + second) for first, second in footage.halves(advance)]
+    halves = footage.halves(advance)
+    truth = [0.5 * (first + second) for first, second in halves]
     pictures, surfaces = denoised(footage, chosen, advance)
-    rows = [[name, *judged(made, truth, surfaces).row] for name, made in pictures.items()]
+    rows = [[name, *judged(made, halves, surfaces).row] for name, made in pictures.items()]
     last = {name: made[-1] for name, made in (pictures | {"truth": truth}).items()}
     return Table(footage.scene, ("filter", *COLUMNS), rows), last
 
@@ -183,23 +186,34 @@ def accumulated(den: Denoiser, frame: Frame) -> Linear:
     return modulate(den.stage("accumulated").astype(np.float64), guides)
 
 
-def judged(pictures: Sequence[Linear], truth: Sequence[Linear], surfaces: Sequence[Mask]) -> Findings:
-    """Measure two consecutive linear pictures against the truth about them."""
+def judged(pictures: Sequence[Linear], halves: Sequence[Pair], surfaces: Sequence[Mask]) -> Findings:
+    """Measure two consecutive linear pictures against two independent halves of the truth about each."""
+    truth = [0.5 * (first + second) for first, second in halves]
     shown = [(display(picture), display(wanted)) for picture, wanted in zip(pictures, truth, strict=True)]
+    (earlier, _), (later, _) = shown
+    earlier_halves, later_halves = ((display(first), display(second)) for first, second in halves)
     return Findings(
         quality(pictures, truth),
         float(np.mean([ssim(*pair) for pair in shown])),
-        flicker(shown, surfaces),
+        flicker(
+            (earlier, later),
+            ((earlier_halves[0], later_halves[0]), (earlier_halves[1], later_halves[1])),
+            surfaces[0] & surfaces[1],
+        ),
         float(np.mean([sharpness(*pair, np.ones(pair[0].shape[:2], np.bool_)) for pair in shown])),
         float(np.mean([sharpness(*pair, surface) for pair, surface in zip(shown, surfaces, strict=True)])),
     )
 
 
-def flicker(shown: Sequence[tuple[Linear, Linear]], surfaces: Sequence[Mask]) -> float:
-    """The temporal error of two display-referred pictures, each beside its truth, where both show a surface alone."""
-    (earlier, later), where = shown, surfaces[0] & surfaces[1]
-    pictures, truths = ((first[where], second[where]) for first, second in zip(earlier, later, strict=True))
-    return temporal_error(pictures, truths) if where.any() else float("nan")
+def flicker(shown: Pair, halves: tuple[Pair, Pair], where: Mask) -> float:
+    """Change of the error between two display-referred pictures: root mean square, without the truth's own noise.
+
+    The square is the product of the errors against two independent halves of the truth, whose noise has mean 0. NaN
+    where there is nothing to look at.
+    """
+    first, second = ((shown[1] - shown[0] - (half[1] - half[0]))[where] for half in halves)
+    squared = float(np.mean(first * second)) if where.any() else float("nan")
+    return float(np.sqrt(np.maximum(squared, 0.0)))
 
 
 def sharpness(shown: Linear, wanted: Linear, where: Mask) -> float:

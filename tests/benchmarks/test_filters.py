@@ -60,8 +60,18 @@ def test_edges_are_looked_for_where_they_are_asked_for() -> None:
 def test_flicker_counts_on_surfaces_alone() -> None:
     still, left = np.zeros((4, 4, 3)), np.repeat(np.arange(4)[None] < 2, 4, axis=0)
     moved = np.where(left[..., None], 0.25, 1.0)
-    assert filters.flicker([(still, still), (moved, still)], [left, left]) == pytest.approx(0.25)
-    assert np.isnan(filters.flicker([(still, still), (moved, still)], [left, ~left]))
+    truth = ((still, still), (still, still))
+    assert filters.flicker((still, moved), truth, left) == pytest.approx(0.25)
+    assert np.isnan(filters.flicker((still, moved), truth, left & ~left))
+
+
+def test_noise_of_the_truth_is_no_flicker() -> None:
+    rng = np.random.default_rng(0)
+    still = np.zeros((100, 100, 3))
+    first, second = ((rng.normal(0, 0.1, still.shape), rng.normal(0, 0.1, still.shape)) for _ in range(2))
+    moved = still + 0.05
+    found = filters.flicker((still, moved), (first, second), np.ones((100, 100), np.bool_))
+    assert found == pytest.approx(0.05, rel=0.1)
 
 
 def test_the_gradient_is_that_of_luminance() -> None:
