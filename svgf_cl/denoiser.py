@@ -194,7 +194,7 @@ class Denoiser:
             rebuilt = False
             if self._plan and self._inputs:
                 pipeline = settings.pipeline(self._inputs)
-                rebuilt = pipeline.without_scalars() != self._plan.pipeline.without_scalars()
+                rebuilt = not pipeline.differs_in_scalars_alone(self._plan.pipeline)
                 if rebuilt:
                     plan = Plan(pipeline, self._workplace)
                     if not self._is_cut and not plan.inherit(self._plan):

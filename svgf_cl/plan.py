@@ -17,7 +17,7 @@ from svgf_cl.device.memory_plan import memory_slots
 from svgf_cl.device.opencl_errors import allocate
 from svgf_cl.device.tuning import Tuning
 from svgf_cl.errors import SvgfError
-from svgf_cl.filters.pipeline import Access, Buffer, Pass, Pipeline
+from svgf_cl.filters.pipeline import Access, Buffer, Pass, Pipeline, Resource
 from svgf_cl.filters.stages import Stage, stages
 
 # Is told the label and the event of every pass as soon as it is on the queue.
@@ -75,6 +75,7 @@ class Plan:
         self._turns = [self._launches() for _ in range(2)]  # of odd and even frames: a pair's halves change places
         self._turn = itertools.cycle(self._turns)
         self._frame_number = 0
+        self._without_past: list[Resource] = []  # of those that last, until the next frame
 
     @property
     def nbytes(self) -> int:
@@ -100,8 +101,9 @@ class Plan:
             Label and event of every pass.
         """
         self._buffers.begin_frame()
+        self._buffers.forget(self.pipeline.lasting if first else self._without_past)
+        self._without_past = []
         if first:
-            self._buffers.forget(self.pipeline.lasting)
             self._frame_number = 0
         done = []
         for launch in next(self._turn):
@@ -126,6 +128,7 @@ class Plan:
         if any(resource not in others and not resource.tells_unknown for resource in mine):
             return False
         self._buffers.inherit(other._buffers, [resource for resource in mine if resource in others])
+        self._without_past = [each for each in mine if each not in others or each in other._without_past]
         self._frame_number = other._frame_number
         return True
 

@@ -291,7 +291,23 @@ class Pipeline:
                     if use.quantity.stage and isinstance(each.of, Buffer):
                         yield use.quantity.stage, each.of.resource, use.quantity
 
-    def without_scalars(self) -> Pipeline:
-        """The same with no numbers: pipelines that are alike in this share kernels, memory and launches."""
+    def differs_in_scalars_alone(self, other: Pipeline) -> bool:
+        """Whether it shares kernels, memory and launches with another."""
+        return self._without_scalars() == other._without_scalars() and all(
+            same_arrays(mine.arrays, others.arrays) for mine, others in zip(self.passes, other.passes, strict=True)
+        )
+
+    def _without_scalars(self) -> Pipeline:
         blank = tuple(replace(entry, scalars=dict.fromkeys(entry.scalars, 0)) for entry in self.passes)
         return replace(self, passes=blank)
+
+
+def same_arrays(a: Mapping[str, np.ndarray], b: Mapping[str, np.ndarray]) -> bool:
+    """Whether arrays are the same by name, type, shape and every bit."""
+    return list(a) == list(b) and all(
+        a[name] is b[name]
+        or (
+            a[name].dtype == b[name].dtype and a[name].shape == b[name].shape and a[name].tobytes() == b[name].tobytes()
+        )
+        for name in a
+    )

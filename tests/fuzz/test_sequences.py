@@ -68,9 +68,10 @@ class Calls(RuleBasedStateMachine):
         self.begun = False
 
     @precondition(lambda self: not self.begun)
-    @rule(seed=calls.seeds, buffer=st.integers(0, 8))
+    @rule(seed=calls.seeds, buffer=st.integers(0, 5))  # the planes of the fewest fields take six
     def no_room_for_a_frame(self, seed: int, buffer: int) -> None:
         frame = calls.frame_of(seed, TINY, self.names, 3, wild=False)
+        self.den.resize(TINY)  # gives back what an earlier frame has taken
         with no_room(buffer), pytest.raises(DeviceError, match="no room"):
             self.den.denoise(frame)
 

@@ -17,6 +17,8 @@ from svgf_cl.filters import FILTERS
 from svgf_cl.filters.pipeline import Pass, Pipeline
 from svgf_cl.filters.signals import SPLITS, Inputs
 
+pytestmark = pytest.mark.filterwarnings("ignore::pyopencl.CompilerWarning")  # Intel's reports success
+
 # All that changes a signature; how many components motion has does not.
 INPUTS = [
     Inputs(signals=split, albedo=albedo, emission=emission, id=id_)
