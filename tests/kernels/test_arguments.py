@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import functools
 import itertools
+import tempfile
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -38,7 +39,8 @@ def options(entry: Pass, pipeline: Pipeline) -> tuple[str, ...]:
 @functools.cache
 def kernels(context: cl.Context, source: str, flags: tuple[str, ...]) -> dict[str, tuple[str, ...]]:
     """The kernels of a source, and the names of their arguments as the device's compiler sees them."""
-    program = cl.Program(context, programs.source(source)).build([*flags, "-cl-kernel-arg-info"])
+    with tempfile.TemporaryDirectory() as fresh:  # a program out of pyopencl's cache of binaries knows no names
+        program = cl.Program(context, programs.source(source)).build([*flags, "-cl-kernel-arg-info"], cache_dir=fresh)
     return {kernel.function_name: tuple(names(kernel)) for kernel in program.all_kernels()}
 
 
