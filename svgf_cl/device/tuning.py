@@ -19,7 +19,7 @@ from svgf_cl.io.atomic import make_folder, read_json, written_whole
 from svgf_cl.io.cache import cache_folder, device_key
 
 MEMORY = "tunings.json"
-VECTOR_WIDTHS = (1, 4, 8, 16)  # what kernels/common.clh is written for
+VECTOR_WIDTHS = (1, 4, 8, 16)  # what kernels/vectors.clh is written for
 
 # On a CPU most of a row, as each work-group costs its driver a tenth of a microsecond or more; on a GPU, where a vector
 # is one pixel, a tile of whole warps.
