@@ -63,7 +63,7 @@ KERNEL demodulate(const int4 size, EACH_RADIANCE(DECLARED),
 #if HAS_ALBEDO
                   __global const float *restrict albedo,
 #endif
-#if HAS_EMISSION && SIGNALS == 1
+#if SUBTRACTS_EMISSION
                   __global const float *restrict emission,
 #endif
                   __global const float *restrict normal, __global const float *restrict depth,
@@ -89,7 +89,7 @@ KERNEL demodulate(const int4 size, EACH_RADIANCE(DECLARED),
 #endif
 
     Color light[SIGNALS] = {EACH_RADIANCE(LOADED)};
-#if HAS_EMISSION && SIGNALS == 1
+#if SUBTRACTS_EMISSION
     const Color glow = known_emission(size, x, y, emission);
     UNROLLED_FOR(k, 3) light[0].channel[k] -= glow.channel[k];
 #endif

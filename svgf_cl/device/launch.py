@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from numbers import Integral
 
 import numpy as np
 import pyopencl as cl
@@ -55,4 +56,4 @@ class Launch:
 
 def scalar_arguments(entry: Pass) -> dict[str, np.generic]:
     """A pass's numbers as kernels take them."""
-    return {name: np.int32(n) if isinstance(n, int) else np.float32(n) for name, n in entry.scalars.items()}
+    return {name: np.int32(n) if isinstance(n, Integral) else np.float32(n) for name, n in entry.scalars.items()}

@@ -24,8 +24,7 @@ def demodulate(inputs: Inputs) -> float:
     signals = len(inputs.signals)
     normal = DOT + 2 + 3 + SAFE
     albedo = 3 * (SAFE + 1) if inputs.albedo else 0
-    holders = sum(signal.holds_emission for signal in inputs.signals)
-    emission = holders * 3 * (SAFE + 2) if inputs.emission else 0
+    emission = 3 * (SAFE + 2) if inputs.subtracts_emission else 0
     return normal + albedo + emission + signals * (3 * (SAFE + 1 + 2) + DOT)
 
 

@@ -84,12 +84,18 @@ class Inputs:
         return (*(signal.field for signal in self.signals), "normal", "depth", "motion", *optional)
 
     @property
+    def subtracts_emission(self) -> bool:
+        """Whether emission is part of a signal's field, and has to be taken out of it."""
+        return self.emission and any(signal.holds_emission for signal in self.signals)
+
+    @property
     def defines(self) -> dict[str, int]:
         """The kernels' macros."""
         numbers = {f"SIGNAL_{signal.name.upper()}": number for number, signal in enumerate(self.signals)}
         return numbers | {
             "SIGNALS": len(self.signals),
             "MOTION": self.motion,
+            "SUBTRACTS_EMISSION": int(self.subtracts_emission),
             "HAS_ALBEDO": int(self.albedo),
             "HAS_EMISSION": int(self.emission),
             "HAS_ID": int(self.id),

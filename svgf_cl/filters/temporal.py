@@ -110,8 +110,7 @@ class TemporalFilter(Filter):
         """The user's arrays to planes: made safe, and light divided by albedo."""
         light = tuple(user(signal.field, f"radiance_{number}") for number, signal in enumerate(inputs.signals))
         divides = inputs.albedo and any(signal.divided_by == "albedo" for signal in inputs.signals)
-        subtracts = inputs.emission and any(signal.holds_emission for signal in inputs.signals)
-        optional = [name for name, read in (("albedo", divides), ("emission", subtracts)) if read]
+        optional = [name for name, read in (("albedo", divides), ("emission", inputs.subtracts_emission)) if read]
         surface = ("normal", "depth", "id") if inputs.id else ("normal", "depth")
         return Pass(
             "modulate",

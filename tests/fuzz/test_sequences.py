@@ -50,7 +50,7 @@ class Calls(RuleBasedStateMachine):
     @rule(seed=calls.seeds)
     def a_frame_of_other_fields(self, seed: int) -> None:
         (other,) = set(SETS) - {self.names}
-        with pytest.raises(SvgfError, match=r"Frame\.fields: expected .* reset, got"):
+        with pytest.raises(SvgfError, match=r"\(frame\): expected the fields .* reset, got"):
             self.den.denoise(calls.frame_of(seed, TINY, other, 3, wild=False))
 
     @rule(names=st.sampled_from(SETS))

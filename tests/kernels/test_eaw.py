@@ -110,7 +110,9 @@ def test_tolerance_halves_with_every_level(level: int) -> None:
     step, dim = 2 ** (level - 1), 0.0625
     seen = np.isin(np.arange(step + 1), (0, step))[None]
     picture = np.where(np.arange(step + 1) == step, dim, 0.0)[None, :, None]
-    _, den = feed(wall((1, step + 1), color=picture, depth=np.where(seen, 4.0, np.inf)), iterations=level)
+    _, den = feed(
+        wall((1, step + 1), color=picture, depth=np.where(seen, 4.0, np.inf)), iterations=level, sigma_color=1
+    )
     w = 1 / 8 * np.exp(-3 * (dim * step) ** 2)
     assert_allclose(den.stage(f"level_{level}")[0, 0, 0], dim * w / (1 / 4 + w), rtol=1e-4)
 
@@ -148,7 +150,7 @@ def test_tolerating_all_it_is_a_blur_weighted_by_surface(taps: str, spline: np.n
 def test_light_and_tolerance_scaled_together_scale_the_picture(exposure: float) -> None:
     frames = bumpy_sequence(("color",), count=3)
     brighter = [wall(**frame.present() | {"color": exposure * frame.color}) for frame in frames]
-    expected, got = feed(*frames)[0], feed(*brighter, sigma_color=exposure)[0]
+    expected, got = feed(*frames, sigma_color=1)[0], feed(*brighter, sigma_color=exposure)[0]
     assert_array_equal(got, np.float32(exposure) * expected)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -80,13 +79,10 @@ class Weigh(Filter):
 
 
 @pytest.fixture(autouse=True)
-def kernels(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def kernels(monkeypatch: pytest.MonkeyPatch) -> None:
     """As if kernels/weigh.cl were there."""
     usual = programs.source
     monkeypatch.setattr(programs, "source", lambda name: SOURCE if name == "weigh" else usual(name))
-    programs.words.cache_clear()
-    yield
-    programs.words.cache_clear()
 
 
 def frames(count: int = COUNT) -> list[Frame]:

@@ -46,9 +46,9 @@ def test_numbers_change_without_another_kernel(queue: cl.CommandQueue) -> None:
 
 
 def test_whole_numbers_stay_whole() -> None:
-    assert scalar_arguments(replace(ENTRY, scalars={"a": 2, "b": 2.0})) == {"a": np.int32(2), "b": np.float32(2)}
-    found = scalar_arguments(replace(ENTRY, scalars={"a": 2, "b": 2.0}))
-    assert [value.dtype for value in found.values()] == [np.int32, np.float32]
+    found = scalar_arguments(replace(ENTRY, scalars={"python": 2, "numpy": np.int64(2), "float": 2.0}))
+    assert list(found.values()) == [2, 2, 2]
+    assert [value.dtype for value in found.values()] == [np.int32, np.int32, np.float32]
 
 
 @pytest.mark.filterwarnings("ignore::pyopencl.CompilerWarning")

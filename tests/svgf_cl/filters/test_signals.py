@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from svgf_cl.filters.signals import COLOR, DIRECT, INDIRECT, SPLITS, Inputs
+from svgf_cl.filters.signals import COLOR, DIRECT, INDIRECT, SPLITS, Inputs, Signal
 from svgf_cl.frame import CHANNELS
 from tests.frames import FULL, PLAIN, SPLIT, bumpy, only
 
@@ -35,6 +35,12 @@ def test_signals_are_told_by_name_and_come_from_fields_of_a_frame() -> None:
     for split in SPLITS:
         assert len({signal.name for signal in split}) == len(split)
         assert all(CHANNELS[signal.field] == (3,) for signal in split)
+
+
+@pytest.mark.parametrize(("signals", "subtracted"), [((COLOR,), True), ((DIRECT, INDIRECT), False)])
+def test_emission_is_taken_out_of_what_holds_it(signals: tuple[Signal, ...], subtracted: bool) -> None:
+    assert Inputs(signals=signals, emission=True).subtracts_emission == subtracted
+    assert not Inputs(signals=signals).subtracts_emission
 
 
 def test_kernels_know_signals_by_number() -> None:

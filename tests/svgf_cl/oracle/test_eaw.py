@@ -96,7 +96,7 @@ class TestOracle:
 
     def test_scaling_light_and_its_tolerance_scales_the_picture(self, rng: np.random.Generator) -> None:
         frames = [bumpy(rng) for _ in range(3)]
-        plain, bright = Oracle(SHAPE, Eaw()), Oracle(SHAPE, Eaw(sigma_color=1024))
+        plain, bright = Oracle(SHAPE, Eaw(sigma_color=1)), Oracle(SHAPE, Eaw(sigma_color=1024))
         for frame in frames:
             expected = 1024 * plain.denoise(frame)
             assert_allclose(bright.denoise(replace(frame, color=1024 * frame.color)), expected, rtol=1e-9)
