@@ -195,7 +195,7 @@ INLINE History surroundings(const int4 size, Expected e, floatv nx, floatv ny, B
 
 // `accumulated` may lie where `illumination` does: a pixel of either is touched by its own work-item alone.
 KERNEL temporal(const int4 size, const float alpha_color, const float alpha_moments, const float depth_threshold,
-                const float normal_threshold, __global const float *restrict motion,
+                const float normal_threshold, const int frame_number, __global const float *restrict motion,
                 __global const float *restrict guide, __global const light_t *illumination,
                 __global const float *restrict previous_guide, __global const light_t *restrict history,
                 __global const light_t *restrict previous_moments, __global light_t *accumulated,
@@ -206,10 +206,13 @@ KERNEL temporal(const int4 size, const float alpha_color, const float alpha_mome
     const Expected e = expect(size, x, y, motion, guide, depth_threshold);
     const intv hit = load(SHARED_PLANE(size, guide, GUIDE_DEPTH) + here) > 0.0f;
 
-    const Box footprints = box_of(size, x, y, e.left, e.top, hit, 2);
-    History h = footprint(size, e, footprints, normal_threshold, previous_guide, history, previous_moments);
+    History h = no_history();
+    if (frame_number > 0) {  // after a cut the previous frame is of another shot
+        const Box footprints = box_of(size, x, y, e.left, e.top, hit, 2);
+        h = footprint(size, e, footprints, normal_threshold, previous_guide, history, previous_moments);
+    }
     const intv lost = hit & (h.weight <= ENOUGH);
-    if (any_lane(lost)) {  // thin geometry
+    if (frame_number > 0 && any_lane(lost)) {  // thin geometry
         const floatv nx = floor(e.fx + 0.5f), ny = floor(e.fy + 0.5f);
         const Box around = box_of(size, x, y, e.left + to_int(nx) - 1, e.top + to_int(ny) - 1, lost, 3);
         const History nine =

@@ -39,7 +39,8 @@ class Quantity:
     is_light : bool
         Whether its channels are red, luminance and blue, as kernels keep light, and stand for red, green and blue.
     unknown : float, optional
-        What it holds where nothing is known of the past; written before the first frame and after a cut.
+        What it holds where nothing is known of the past, for a kernel that does not go by the frame's number; written
+        before the first frame and after a cut.
     """
 
     name: str

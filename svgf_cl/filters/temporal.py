@@ -84,8 +84,8 @@ class TemporalFilter(Filter):
         return Format.ROOT if self.half_history else Format.FLOAT
 
     def guide(self, inputs: Inputs) -> Resource:
-        """The surface that a pixel shows; depth is 0 at a miss, where there is no history either."""
-        depth = Quantity("depth", stage="depth", unknown=0.0)
+        """The surface that a pixel shows; depth is 0 at a miss."""
+        depth = Quantity("depth", stage="depth")
         id_ = (Quantity("id"),) if inputs.id else ()
         normal = Quantity("normal", 3, format=Format.SNORM if self.half_guides else Format.FLOAT, stage="normal")
         return Resource("guide", "guide", (depth, *id_, normal), Life.PAIR)
@@ -133,6 +133,7 @@ class TemporalFilter(Filter):
                 "depth_threshold": self.depth_threshold,
                 "normal_threshold": self.normal_threshold,
             },
+            per_frame=("frame_number",),
             reads=(
                 user("motion", channels=inputs.motion),
                 access(guide, taps=dict.fromkeys(guide.names, HERE) | {"depth": CROSS}),

@@ -135,9 +135,11 @@ class TestEveryFilter:
         assert written == {(each.name, name) for each in pipeline.resources for name in each.names}
 
     @given(every_pipeline)
-    def test_a_history_says_where_there_is_none(self, pipeline: Pipeline) -> None:
-        """Each lasting buffer, or the guide that every reprojection asks."""
-        assert any(resource.name == "guide" and resource.tells_unknown for resource in pipeline.lasting)
+    def test_who_reads_the_past_knows_whether_there_is_one(self, pipeline: Pipeline) -> None:
+        """By the frame's number, or because what it reads says so."""
+        for entry in pipeline.passes:
+            past = [each.of.resource for each in entry.reads if isinstance(each.of, Buffer) and each.of.previous]
+            assert "frame_number" in entry.per_frame or all(resource.tells_unknown for resource in past)
 
     @given(every_pipeline)
     def test_taps_stay_within_the_halo(self, pipeline: Pipeline) -> None:
