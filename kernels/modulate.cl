@@ -63,7 +63,7 @@ KERNEL demodulate(const int4 size, EACH_RADIANCE(DECLARED),
 #if HAS_ALBEDO
                   __global const float *restrict albedo,
 #endif
-#if SUBTRACTS_EMISSION
+#if EMISSION_SIGNAL >= 0
                   __global const float *restrict emission,
 #endif
                   __global const float *restrict normal, __global const float *restrict depth,
@@ -89,9 +89,9 @@ KERNEL demodulate(const int4 size, EACH_RADIANCE(DECLARED),
 #endif
 
     Color light[SIGNALS] = {EACH_RADIANCE(LOADED)};
-#if SUBTRACTS_EMISSION
+#if EMISSION_SIGNAL >= 0
     const Color glow = known_emission(size, x, y, emission);
-    UNROLLED_FOR(k, 3) light[0].channel[k] -= glow.channel[k];
+    UNROLLED_FOR(k, 3) light[EMISSION_SIGNAL].channel[k] -= glow.channel[k];
 #endif
 #if HAS_ALBEDO
     const Color texture = known_albedo(size, x, y, albedo);

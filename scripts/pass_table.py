@@ -45,8 +45,8 @@ def section(kind: type[Filter]) -> Iterable[str]:
     pipeline = kind(taa=True).pipeline(INPUTS)  # type: ignore[call-arg]
     yield f"### Passes of `{kind.name}`\n"
     heads: tuple[str, ...] = ("pass", "source", "reads", "writes", "numbers", "operations", "bytes")
-    first = {entry.entry: entry for entry in reversed(pipeline.passes)}
-    yield table(heads, [pass_row(entry, first[entry.entry]) for entry in pipeline.passes])
+    first = {entry.kernel: entry for entry in reversed(pipeline.passes)}
+    yield table(heads, [pass_row(entry, first[entry.kernel]) for entry in pipeline.passes])
     yield f"### Buffers of `{kind.name}`\n"
     heads = ("buffer", "quantities", "format", "bytes a pixel", "needed until", "may be written over")
     yield table(heads, [buffer_row(resource) for resource in pipeline.resources])

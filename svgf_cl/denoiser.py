@@ -16,13 +16,13 @@ import pyopencl.array as cl_array
 from svgf_cl.device.arguments import check_filter, check_inputs, check_queue, check_shape, check_tuning, held, layout_of
 from svgf_cl.device.events import pending
 from svgf_cl.device.opencl_errors import allocate, opencl_errors
-from svgf_cl.device.process import check_process
+from svgf_cl.device.process import check_process, is_forked
 from svgf_cl.device.tuning import Tuning
 from svgf_cl.device.user_arrays import UserArrays, check_out
 from svgf_cl.errors import ArgumentError, SvgfError, shown
 from svgf_cl.filters import Settings
 from svgf_cl.filters.filter import Filter
-from svgf_cl.filters.pipeline import OUT
+from svgf_cl.filters.pipeline import OUT, Pipeline
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Frame, Shape, UserArray
 from svgf_cl.plan import AfterPass, Plan, Workplace
@@ -55,7 +55,7 @@ class Denoiser:
         How to cut the work on this device; by default what ``svgf-cl tune`` found best, else what suits most.
     after_pass : callable, optional
         Is told the label and the event of every pass as soon as it is on the queue, to watch or time them one by one.
-        What it raises breaks off the frame.
+        What it raises breaks off the frame. It may not call the denoiser.
 
     Raises
     ------
@@ -90,8 +90,9 @@ class Denoiser:
         self._plan: Plan | None = None
         self._inputs: Inputs | None = None
         self._is_cut = True
+        self._is_running = False
         self._events: tuple[tuple[str, cl.Event], ...] = ()
-        self._turn = threading.RLock()
+        self._lock = threading.RLock()
 
     @property
     def shape(self) -> Shape:
@@ -150,7 +151,7 @@ class Denoiser:
                 check_out(out, (*self._shape, 3))
             with self._opencl_errors("denoise", NOT_BEGUN):
                 inputs = Inputs.of(frame)
-                plan = self._ready(inputs)
+                plan = self._ready(inputs, "denoise(frame)")
                 fields = {name: getattr(frame, name) for name in plan.pipeline.fields}
                 result = self._result(frame) if out is None else out
                 events = pending(wait_for, {**fields, OUT: result}, self._workplace.queue)
@@ -169,7 +170,7 @@ class Denoiser:
         """
         check_inputs(inputs)
         with self._in_turn(), self._opencl_errors("warm_up", UNCHANGED):
-            self._plan, self._inputs = self._ready(inputs), inputs
+            self._plan, self._inputs = self._ready(inputs, "warm_up(inputs)"), inputs
             self._workplace.queue.finish()
 
     def reset(self) -> None:
@@ -180,8 +181,8 @@ class Denoiser:
     def update(self, settings: Filter) -> bool:
         """Go on with other settings, or with another filter.
 
-        The past is kept, unless what is kept of it is stored in another way (another filter, or half_guides or
-        half_history): then the next frame begins anew.
+        The past is kept, unless it is another filter's or stored in another way (half_guides, half_history): then the
+        next frame begins anew. Where kernels or passes change, both the old memory and the new are held for a moment.
 
         Returns
         -------
@@ -196,10 +197,7 @@ class Denoiser:
                 pipeline = settings.pipeline(self._inputs)
                 rebuilt = not pipeline.differs_in_scalars_alone(self._plan.pipeline)
                 if rebuilt:
-                    plan = Plan(pipeline, self._workplace)
-                    if not self._is_cut and not plan.inherit(self._plan):
-                        self._cut()
-                    self._plan = plan
+                    self._rebuild(self._plan, pipeline, same_filter=type(settings) is type(self._settings))
                 else:
                     self._plan.set_scalars(pipeline)
             self._settings = settings
@@ -208,16 +206,18 @@ class Denoiser:
     def resize(self, shape: Shape) -> None:
         """Go on with frames of another (height, width): a cut, but with the kernels that are built already."""
         shape = check_shape(shape)
-        with self._in_turn():
+        with self._in_turn() as arrays:
             layout = layout_of(shape, self._tuning, self._settings)
             self._workplace = replace(self._workplace, layout=layout)
             self._shape, self._plan = shape, None
+            arrays.drop_copies()
             self._cut()
 
     def close(self) -> None:
         """Give memory back; no call but this one works afterwards. Results still being computed are completed."""
-        with self._turn:
-            self._plan, self._arrays, self._events = None, None, ()
+        if not is_forked():  # what was the other process's goes with this one
+            with self._lock:
+                self._plan, self._arrays, self._events = None, None, ()
 
     def __enter__(self) -> Denoiser:
         return self
@@ -233,16 +233,17 @@ class Denoiser:
     def profile(self) -> dict[str, float]:
         """Milliseconds on the device of each pass of the last frame, in order, from OpenCL events."""
         queue = self._workplace.queue
-        if not queue.properties & cl.command_queue_properties.PROFILING_ENABLE:
-            raise SvgfError("profile(): the queue was made without PROFILING_ENABLE")
         with self._in_turn(), self._opencl_errors("profile", UNCHANGED):
+            if not queue.properties & cl.command_queue_properties.PROFILING_ENABLE:
+                raise SvgfError("profile(): the queue was made without PROFILING_ENABLE")
             queue.finish()
             return {name: 1e-6 * (event.profile.end - event.profile.start) for name, event in self._events}
 
     @property
     def stages(self) -> list[str]:
-        """Names that `stage` understands; empty before the first frame, and after a cut until the next one."""
-        with self._turn:
+        """Names that `stage` understands; none before the first frame, nor from a cut or rebuild to the next one."""
+        check_process()
+        with self._lock:
             return list(self._plan.stages) if self._plan and self._events else []
 
     def stage(self, name: str) -> np.ndarray:
@@ -283,17 +284,20 @@ class Denoiser:
 
     @property
     def nbytes(self) -> int:
-        """Device memory held for planes, in bytes; 0 before the first frame."""
-        with self._turn:
+        """Device memory held for planes, in bytes; 0 before the first frame or `warm_up`."""
+        check_process()
+        with self._lock:
             return self._plan.nbytes if self._plan else 0
 
     @contextmanager
     def _in_turn(self) -> Iterator[UserArrays]:
         """Around what touches the device: one thread at a time, in the process that made it, before it is closed."""
         check_process()
-        with self._turn:
+        with self._lock:
             if self._arrays is None:
                 raise SvgfError("Denoiser: expected one that is open, got one after close() or the end of its 'with'")
+            if self._is_running:
+                raise SvgfError("Denoiser: expected no call from after_pass, for the frame is not complete; got one")
             yield self._arrays
 
     @contextmanager
@@ -301,14 +305,25 @@ class Denoiser:
         with opencl_errors(self._workplace.queue.device, what, then):
             yield
 
-    def _ready(self, inputs: Inputs) -> Plan:
+    def _ready(self, inputs: Inputs, argument: str) -> Plan:
         """The plan for these inputs; a new one where they changed at a cut."""
         if self._plan and inputs == self._inputs:
             return self._plan
         if not self._is_cut:
-            raise ArgumentError("frame", f"the fields {self._inputs} as before, or a call of reset", str(inputs))
+            raise ArgumentError(argument, f"the fields {self._inputs} as before, or a call of reset", str(inputs))
         self._plan = None  # gives its memory back first
+        if self._arrays:
+            self._arrays.drop_copies()
         return Plan(self._settings.pipeline(inputs), self._workplace)
+
+    def _rebuild(self, old: Plan, pipeline: Pipeline, *, same_filter: bool) -> None:
+        """Make another plan, which takes over the past where it can; until its first frame there is nothing to show."""
+        if self._is_cut:
+            self._plan = None  # gives its memory back first
+        plan = Plan(pipeline, self._workplace)
+        if not (same_filter and not self._is_cut and plan.inherit(old)):
+            self._cut()
+        self._plan, self._events = plan, ()
 
     def _run(
         self,
@@ -326,11 +341,19 @@ class Denoiser:
             with arrays.in_use(buffers, result):
                 if events:
                     cl.enqueue_barrier(queue, wait_for=events)
-                done = plan.run(buffers, first=first, after_pass=self._after_pass)
+                done = self._passes(plan, buffers, first)
             if isinstance(result, cl_array.Array):
                 result.add_event(done[-1][1])
                 queue.flush()  # whoever waits for that event on another queue must not wait for ever
         self._is_cut, self._events = False, tuple(done)
+
+    def _passes(self, plan: Plan, buffers: dict[str, cl.Buffer], first: bool) -> list[tuple[str, cl.Event]]:
+        """Put a frame's passes on the queue."""
+        self._is_running = True
+        try:
+            return plan.run(buffers, first=first, after_pass=self._after_pass)
+        finally:
+            self._is_running = False
 
     def _plan_with(self, stage: str) -> Plan:
         """The plan, if it has such a stage of a last frame."""

@@ -16,10 +16,10 @@ class FrameError(SvgfError):
 
 
 class ArgumentError(SvgfError):
-    """An argument of `Denoiser.denoise` beside the frame's fields is wrong: where the result goes, what to wait for."""
+    """An argument of a call beside the frame's fields is wrong: where the result goes, what to wait for."""
 
     def __init__(self, argument: str, expected: str, got: str) -> None:
-        super().__init__(f"denoise({argument}): expected {expected}, got {got}")
+        super().__init__(f"{argument}: expected {expected}, got {got}")
 
 
 class SettingsError(SvgfError):

@@ -138,7 +138,7 @@ def check_array(name: str, value: Any) -> None:
 
 def wrong(name: str, expected: str, got: str) -> FrameError | ArgumentError:
     """The error of an array of the user's: `FrameError` for a frame's field, else `ArgumentError`."""
-    return (FrameError if name in CHANNELS else ArgumentError)(name, expected, got)
+    return FrameError(name, expected, got) if name in CHANNELS else ArgumentError(f"denoise({name})", expected, got)
 
 
 def extent(shape: Shape) -> str:

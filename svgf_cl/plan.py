@@ -101,12 +101,13 @@ class Plan:
             Label and event of every pass.
         """
         self._buffers.begin_frame()
+        launches = next(self._turn)  # in step with the buffers, whatever fails from here on
         self._buffers.forget(self.pipeline.lasting if first else self._without_past)
         self._without_past = []
         if first:
             self._frame_number = 0
         done = []
-        for launch in next(self._turn):
+        for launch in launches:
             event = launch.enqueue(self._at.queue, user, {"frame_number": self._frame_number})
             self._keep(launch.entry.writes)
             if after_pass:
@@ -173,7 +174,7 @@ class Plan:
     def _launch(self, entry: Pass, constants: Mapping[str, cl.Buffer]) -> Launch:
         at = self._at
         defines = {"VW": at.tuning.vector_width, **self.pipeline.defines}
-        kernel = cl.Kernel(programs.build(at.queue.context, at.queue.device, entry.source, defines), entry.entry)
+        kernel = cl.Kernel(programs.build(at.queue.context, at.queue.device, entry.source, defines), entry.kernel)
         own = {each.argument: self._buffers[each.of] for each in entry.accesses if isinstance(each.of, Buffer)}
         fixed: dict[str, Argument] = {"size": at.layout.size, **scalar_arguments(entry), **constants, **own}
         work_group = fitting(at.tuning.work_group, kernel, at.queue.device)

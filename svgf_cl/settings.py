@@ -7,6 +7,8 @@ from dataclasses import dataclass, field, fields
 from numbers import Integral, Real
 from typing import Any, Protocol, TypeVar
 
+import numpy as np
+
 from svgf_cl.errors import SettingsError, shown
 
 DOMAIN, UNIT, REASON = "domain", "unit", "reason"  # of a field's metadata
@@ -84,10 +86,10 @@ class Switch:
 
     def holds(self, value: object) -> bool:
         """Whether `value` is a bool."""
-        return isinstance(value, bool)
+        return isinstance(value, bool | np.bool_)
 
     def plain(self, value: Any) -> Value:
-        """The value itself."""
+        """NumPy's True and False as Python's."""
         return bool(value)
 
     def parse(self, text: str) -> Value:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import pyopencl as cl
 
@@ -18,8 +19,7 @@ from svgf_cl.bench.cost import Cost, cost
 from svgf_cl.bench.rig import ENQUEUE, FRAME, FRAME_NUMPY, Row
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.pipeline import Pass
-from svgf_cl.filters.signals import SPLITS, Inputs
-from svgf_cl.filters.wavelet import WaveletFilter
+from svgf_cl.filters.signals import DIRECT, INDIRECT, Inputs
 from svgf_cl.frame import Shape, extent
 from svgf_cl.settings import Range, domains
 
@@ -31,7 +31,7 @@ STARTS: tuple[Row, ...] = (("start", "cold"), ("start", "warm"))
 
 # What `there_and_back` supplies.
 ROOM = Inputs(motion=3, albedo=True, id=True)
-ROOM_SPLIT = replace(ROOM, signals=SPLITS[0])
+ROOM_SPLIT = replace(ROOM, signals=(DIRECT, INDIRECT))
 
 
 @dataclass(frozen=True)
@@ -85,11 +85,11 @@ def cases(device: cl.Device, shapes: Sequence[Shape], settings: Filter) -> Itera
     """All that is timed on a device: every size, and what else a frame's time is followed over."""
     for shape in shapes:
         yield Case(shape, settings)
-    if isinstance(settings, WaveletFilter):
-        span = domains(type(settings))["iterations"]
-        assert isinstance(span, Range)
+    span = domains(type(settings)).get("iterations")
+    if isinstance(span, Range):
         for iterations in range(int(span.least), int(span.greatest) + 1):
-            yield Case(USUAL_SHAPE, replace(settings, iterations=iterations), variant=f"iterations{iterations}")
+            fewer: dict[str, Any] = {"iterations": iterations}
+            yield Case(USUAL_SHAPE, replace(settings, **fewer), variant=f"iterations{iterations}")
     for inputs in (ROOM, ROOM_SPLIT):
         yield Case(USUAL_SHAPE, settings, inputs, variant=f"signals{len(inputs.signals)}")
     for cores in core_counts() if device.type & cl.device_type.CPU else ():

@@ -62,7 +62,7 @@ class Station:
 
     def start(self) -> None:
         """Time the first frame of new processes."""
-        cold, warm = first_frames(self.report, USUAL_SHAPE)
+        cold, warm = first_frames(self.report, USUAL_SHAPE, self.settings)
         self._starts = dict(zip(STARTS, ([cold], warm), strict=True))
 
     def sample(self, case: Case, seconds: float) -> None:
@@ -126,13 +126,13 @@ class Station:
         passes = {entry.path: entry for entry in case.passes}
         facts = {
             "stage": " ".join(row),
-            "kernel": passes[row].entry if row in passes else None,
+            "kernel": passes[row].kernel if row in passes else None,
             "level": passes[row].level if row in passes else None,
             "variant": case.variant,
             "width": case.shape[1],
             "height": case.shape[0],
             "signals": len(case.inputs.signals),
-            "iterations": getattr(case.settings, "iterations", None),
+            "iterations": vars(case.settings).get("iterations"),
             "cores": case.cores,
         }
         return Result(case.name(row), self.report.selector, clock, tuple(seconds), facts | more)

@@ -61,11 +61,9 @@ class Buffers:
         for resource in resources:
             for quantity in resource.quantities:
                 if quantity.unknown is not None:
-                    plane = self._layout.nbytes(8 * quantity.format.nbytes)
-                    begin = resource.first(quantity.name) * plane
-                    past = self[history_of(resource)]
-                    value = quantity.format.dtype.type(quantity.unknown)
-                    cl.enqueue_fill_buffer(self._queue, past, value, begin, quantity.planes * plane)
+                    begin, size = (self._layout.nbytes(8 * n) for n in (resource.begin(quantity.name), quantity.nbytes))
+                    value = quantity.format.encoded(quantity.unknown)
+                    cl.enqueue_fill_buffer(self._queue, self[history_of(resource)], value, begin, size)
 
     def inherit(self, other: Buffers, resources: Sequence[Resource]) -> None:
         """Have the next frame find the past that it would find in `other`, which has these resources too."""

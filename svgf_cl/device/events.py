@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping, Sequence
 import pyopencl as cl
 import pyopencl.array as cl_array
 
-from svgf_cl.errors import ArgumentError
 from svgf_cl.frame import UserArray, wrong
 
 
@@ -22,7 +21,7 @@ def pending(wait_for: Sequence[cl.Event], arrays: Mapping[str, UserArray], queue
     try:
         events = [("wait_for", event) for event in wait_for]
     except TypeError as error:
-        raise ArgumentError("wait_for", "a sequence of pyopencl.Event", type(wait_for).__name__) from error
+        raise wrong("wait_for", "a sequence of pyopencl.Event", type(wait_for).__name__) from error
     events += [(name, event) for name, value in arrays.items() for event in unfinished(value, queue)]
     for name, event in events:
         check_event(name, event, queue.context)

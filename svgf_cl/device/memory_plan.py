@@ -51,7 +51,11 @@ def memory_slots(pipeline: Pipeline) -> list[Slot]:
     pairs = [resource for resource in pipeline.lasting if resource.life is Life.PAIR]
     slots = [Slot([buffer], buffer.resource.planes, always) for buffer in lasting]
     before = [Buffer(resource, previous=True) for resource in pairs]
-    slots += [Slot([buffer], buffer.resource.planes, last_use[buffer]) for buffer in before]
+    # What tells where nothing is known tells it in the halo too, where others need zeros: it shares with none.
+    slots += [
+        Slot([buffer], buffer.resource.planes, always if buffer.resource.tells_unknown else last_use[buffer])
+        for buffer in before
+    ]
     placed = {*lasting}
     for first, entry in enumerate(pipeline.passes):
         for each in entry.writes:

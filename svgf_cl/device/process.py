@@ -9,11 +9,16 @@ from svgf_cl.errors import DeviceError
 _first_user: list[int] = []  # the process that used OpenCL first; a fork copies it
 
 
+def is_forked() -> bool:
+    """Whether this process was forked from one that had used OpenCL."""
+    return bool(_first_user) and _first_user[0] != os.getpid()
+
+
 def check_process() -> None:
-    """Raise `DeviceError` in a process that was forked from one that had used OpenCL."""
+    """Raise `DeviceError` in a process that was forked from one that had used OpenCL; else note that this one does."""
     if not _first_user:
         _first_user.append(os.getpid())
-    if _first_user[0] != os.getpid():
+    if is_forked():
         raise DeviceError(
             "this process was forked from one that had used OpenCL, which does not survive a fork; start processes "
             "with multiprocessing.get_context('spawn'), or fork before the first Denoiser is made"

@@ -63,6 +63,7 @@ def names() -> list[str]:
     return sorted(file.name.removesuffix(".cl") for file in files if file.name.endswith(".cl"))
 
 
+@functools.cache
 def source(name: str) -> str:
     """Return what is compiled for a source file: the shared headers, then the file itself."""
     kernels = resources.files("svgf_cl.kernels")
@@ -101,12 +102,18 @@ def options_of(name: str, defines: Mapping[str, Define]) -> tuple[str, ...]:
     return options(mentioned(name, {**CONSTANTS, **defines}))
 
 
+@functools.lru_cache(maxsize=64)
+def words(text: str) -> frozenset[str]:
+    """Return the words of a source's code, comments aside."""
+    return frozenset(re.findall(r"\w+", re.sub(r"//.*", "", text)))
+
+
 def mentioned(name: str, defines: Mapping[str, Define]) -> dict[str, Define]:
     """Return the macros that a source file mentions; any other would only have it compiled again.
 
     The channels of a quantity are mentioned where it is: the kernels' `PLANE` puts the two names together.
     """
-    known = set(re.findall(r"\w+", re.sub(r"//.*", "", source(name))))
+    known = words(source(name))
     return {macro: value for macro, value in defines.items() if macro.removesuffix("_CHANNELS") in known}
 
 

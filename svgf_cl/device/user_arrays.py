@@ -11,7 +11,6 @@ import pyopencl as cl
 import pyopencl.array as cl_array
 
 from svgf_cl.device.opencl_errors import allocate, lack_of_room
-from svgf_cl.errors import ArgumentError
 from svgf_cl.filters.pipeline import OUT
 from svgf_cl.frame import UserArray, check_array, wrong
 
@@ -44,6 +43,10 @@ class UserArrays:
         wrapped = self._wrapped(host) if self._works_in_place(result) else {}
         copied = {name: self._copied(name, value) for name, value in host.items() if name not in wrapped}
         return device | wrapped | copied
+
+    def drop_copies(self) -> None:
+        """Give back what was kept for frames of another size or with other fields."""
+        self._kept.clear()
 
     @contextmanager
     def in_use(self, buffers: Mapping[str, cl.Buffer], result: UserArray) -> Iterator[None]:
@@ -129,7 +132,7 @@ def check_apart(buffers: Mapping[str, cl.Buffer]) -> None:
     for name, buffer in buffers.items():
         memory, first, last = place(buffer)
         if name != OUT and memory == result and first < end and begin < last:
-            raise ArgumentError(OUT, "memory of its own", f"that of {name}")
+            raise wrong(OUT, "memory of its own", f"that of {name}")
 
 
 def place(buffer: cl.Buffer) -> tuple[int, int, int]:
@@ -142,6 +145,6 @@ def check_out(out: Any, shape: tuple[int, int, int]) -> None:
     """Raise `ArgumentError` unless a result of this shape can be written to `out`."""
     check_array(OUT, out)
     if tuple(out.shape) != shape or out.dtype != np.float32:
-        raise ArgumentError(OUT, f"shape {shape}, float32", f"shape {tuple(out.shape)}, {out.dtype}")
+        raise wrong(OUT, f"shape {shape}, float32", f"shape {tuple(out.shape)}, {out.dtype}")
     if not out.flags.c_contiguous or (isinstance(out, np.ndarray) and not out.flags.writeable):
-        raise ArgumentError(OUT, "a writable C-contiguous array", "a view or read-only array")
+        raise wrong(OUT, "a writable C-contiguous array", "a view or read-only array")

@@ -30,6 +30,12 @@ class Format(Enum):
         """Of an element."""
         return self.dtype.itemsize
 
+    def encoded(self, value: float) -> NDArray[np.generic]:
+        """The element that stands for a value, as an array without axes."""
+        if self is Format.SNORM:
+            return np.array(round(value * SNORM_MAX), self.dtype)
+        return np.array(value**0.5 if self is Format.ROOT else value, self.dtype)
+
     def decoded(self, elements: NDArray[np.generic]) -> NDArray[np.float32]:
         """What elements stand for, as a copy."""
         values = np.array(elements, np.float32, order="C")

@@ -23,8 +23,8 @@ def demodulate(inputs: Inputs) -> float:
     """Section 1: a unit normal, then radiance made safe, divided by albedo and clamped, and its luminance."""
     signals = len(inputs.signals)
     normal = DOT + 2 + 3 + SAFE
-    albedo = 3 * (SAFE + 1) if inputs.albedo else 0
-    emission = 3 * (SAFE + 2) if inputs.subtracts_emission else 0
+    albedo = 3 * (SAFE + 1) if inputs.divides_by_albedo else 0
+    emission = 3 * (SAFE + 2) if inputs.emission_signal >= 0 else 0
     return normal + albedo + emission + signals * (3 * (SAFE + 1 + 2) + DOT)
 
 
@@ -73,7 +73,7 @@ def wavelet(inputs: Inputs, taps: int, light: LightOperations) -> float:
 def modulate(inputs: Inputs) -> float:
     """Section 5: green from luminance, times albedo, plus emission."""
     green = 2 * 2 + 1 + 1
-    albedo = SAFE + 2 if inputs.albedo else 0
+    albedo = SAFE + 2 if inputs.divides_by_albedo else 0
     emission = SAFE + 2 if inputs.emission else 0
     return green + 3 * (len(inputs.signals) - 1 + albedo + emission + 1)
 

@@ -6,6 +6,7 @@ kernel's arguments all follow from a filter's `Pipeline`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
@@ -37,7 +38,7 @@ class Quantity:
     stage : str
         Name by which `Denoiser.stage` shows it; not shown where empty.
     is_light : bool
-        Whether its channels are red, luminance and blue, as kernels keep light, and stand for red, green and blue.
+        Whether its channels are stored as red, luminance and blue, and shown as red, green and blue.
     unknown : float, optional
         What it holds where nothing is known of the past, for a kernel that does not go by the frame's number; written
         before the first frame and after a cut.
@@ -50,6 +51,10 @@ class Quantity:
     stage: str = ""
     is_light: bool = False
     unknown: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.unknown is not None and math.isnan(self.unknown):
+            object.__setattr__(self, "unknown", math.nan)  # the one NaN that equals itself in a comparison of tuples
 
     @property
     def planes(self) -> int:
@@ -96,16 +101,26 @@ class Resource:
         sizes = [quantity.format.nbytes for quantity in self.quantities]
         narrow = sum(size < sizes[0] for size in sizes)
         if sizes != sorted(sizes, reverse=True) or (narrow and narrow < len(sizes) and narrow > 1):
-            raise ValueError(f"{self.name}: expected at most one quantity in 16 bits, behind those in 32")
+            raise ValueError(
+                f"{self.name}: expected quantities all in 32 bits, all in 16, or one in 16 behind those in 32"
+            )
 
     @property
     def names(self) -> tuple[str, ...]:
         """Of its quantities."""
         return tuple(quantity.name for quantity in self.quantities)
 
+    def before(self, name: str) -> tuple[Quantity, ...]:
+        """The quantities in front of one."""
+        return self.quantities[: self.names.index(name)]
+
     def first(self, name: str) -> int:
         """Planes in front of a quantity's."""
-        return sum(quantity.planes for quantity in self.quantities[: self.names.index(name)])
+        return sum(quantity.planes for quantity in self.before(name))
+
+    def begin(self, name: str) -> int:
+        """Bytes a pixel in front of a quantity's."""
+        return sum(quantity.nbytes for quantity in self.before(name))
 
     @property
     def planes(self) -> Planes:
@@ -191,7 +206,7 @@ class Pass:
     ----------
     source : str
         A file in ``kernels/``, without its suffix.
-    entry : str
+    kernel : str
         The kernel in it.
     scalars : mapping of str to int or float
         Numbers that stay the same from frame to frame; kernels get a whole one as int, any other as float.
@@ -209,20 +224,28 @@ class Pass:
     """
 
     source: str
-    entry: str
+    kernel: str
     scalars: Mapping[str, Number] = field(default_factory=dict)
     per_frame: tuple[str, ...] = ()
     arrays: Mapping[str, np.ndarray] = field(default_factory=dict, compare=False)
     reads: tuple[Access, ...] = ()
     writes: tuple[Access, ...] = ()
-    operations: float = 0.0
+    operations: float = field(default=0.0, compare=False)
     level: int | None = None
     row_step: int = 1
 
     @property
     def path(self) -> tuple[str, ...]:
-        """The entry and, where there are several like it, the level."""
-        return (self.entry,) if self.level is None else (self.entry, str(self.level))
+        """The kernel and, where there are several like it, the level."""
+        return (self.kernel,) if self.level is None else (self.kernel, str(self.level))
+
+    def __post_init__(self) -> None:
+        if len(set(self.arguments)) < len(self.arguments):
+            raise ValueError(f"{self.label}: expected arguments of different names, got {', '.join(self.arguments)}")
+        kept = {name: np.array(values) for name, values in self.arrays.items()}  # apart from the owner's
+        for values in kept.values():
+            values.flags.writeable = False
+        object.__setattr__(self, "arrays", kept)
 
     @property
     def label(self) -> str:
@@ -246,6 +269,17 @@ class Pipeline:
 
     passes: tuple[Pass, ...]
     macros: Mapping[str, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        there: set[Buffer | str] = {Buffer(each, previous=each.life is Life.PAIR) for each in self.lasting}
+        for entry in self.passes:
+            for each in entry.reads:
+                if isinstance(each.of, Buffer) and each.of not in there:
+                    raise ValueError(f"{entry.label}: expected a buffer that was written before, got {each.of}")
+            there |= {each.of for each in entry.writes}
+        for names in ([entry.label for entry in self.passes], [name for name, _, _ in self.shown()]):
+            if len(set(names)) < len(names):
+                raise ValueError(f"expected passes and stages of different names, got {', '.join(names)}")
 
     @property
     def resources(self) -> tuple[Resource, ...]:

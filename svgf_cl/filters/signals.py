@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from svgf_cl.errors import SvgfError, shown
 from svgf_cl.frame import Frame
 
 
@@ -60,6 +61,13 @@ class Inputs:
     emission: bool = False
     id: bool = False
 
+    def __post_init__(self) -> None:
+        if self.signals not in SPLITS:
+            names = " or ".join(str(tuple(signal.name for signal in split)) for split in SPLITS)
+            raise SvgfError(f"Inputs.signals: expected the signals {names}, got {shown(self.signals)}")
+        if self.motion not in (2, 3):
+            raise SvgfError(f"Inputs.motion: expected 2 or 3 components, got {shown(self.motion)}")
+
     @classmethod
     def of(cls, frame: Frame) -> Inputs:
         """What `frame` supplies."""
@@ -75,7 +83,7 @@ class Inputs:
     @classmethod
     def every(cls) -> Inputs:
         """All that frames can supply at once, in the finest split."""
-        return cls(signals=SPLITS[0], motion=3, albedo=True, emission=True, id=True)
+        return cls(signals=max(SPLITS, key=len), motion=3, albedo=True, emission=True, id=True)
 
     @property
     def fields(self) -> tuple[str, ...]:
@@ -84,9 +92,18 @@ class Inputs:
         return (*(signal.field for signal in self.signals), "normal", "depth", "motion", *optional)
 
     @property
-    def subtracts_emission(self) -> bool:
-        """Whether emission is part of a signal's field, and has to be taken out of it."""
-        return self.emission and any(signal.holds_emission for signal in self.signals)
+    def emission_signal(self) -> int:
+        """Number of the signal that emission has to be taken out of; -1 if of none."""
+        holders = [number for number, signal in enumerate(self.signals) if signal.holds_emission and self.emission]
+        return holders[0] if holders else -1
+
+    @property
+    def divides_by_albedo(self) -> bool:
+        """Whether light is divided by albedo; kernels divide all signals of a split, or none."""
+        divisors = {signal.divided_by for signal in self.signals}
+        if len(divisors) > 1 or not divisors <= {"albedo", None}:
+            raise ValueError(f"expected signals that are all divided by albedo or none of them, got {divisors}")
+        return self.albedo and divisors == {"albedo"}
 
     @property
     def defines(self) -> dict[str, int]:
@@ -95,8 +112,8 @@ class Inputs:
         return numbers | {
             "SIGNALS": len(self.signals),
             "MOTION": self.motion,
-            "SUBTRACTS_EMISSION": int(self.subtracts_emission),
-            "HAS_ALBEDO": int(self.albedo),
+            "EMISSION_SIGNAL": self.emission_signal,
+            "HAS_ALBEDO": int(self.divides_by_albedo),
             "HAS_EMISSION": int(self.emission),
             "HAS_ID": int(self.id),
         }

@@ -23,10 +23,7 @@ class Stage:
         `planes` are those of the whole resource, as if all were of that format.
         """
         quantity = self.quantity
-        first = (
-            sum(other.nbytes for other in self.resource.quantities[: self.resource.quantities.index(quantity)])
-            // quantity.format.nbytes
-        )
+        first = self.resource.begin(quantity.name) // quantity.format.nbytes
         stack = planes[first : first + quantity.planes].reshape(-1, quantity.channels, *planes.shape[1:])
         images = quantity.format.decoded(np.moveaxis(stack, 1, -1))
         if quantity.is_light:

@@ -101,16 +101,18 @@ class TemporalFilter(Filter):
     def moments(self, inputs: Inputs) -> Resource:
         """Length of the history in frames, and what each signal carries along."""
         known = {"mean": (self.light_format, "mean"), "variance": (self.variance_format, "moment_variance")}
-        carried = [name for signal in inputs.signals for name in signal.carries]
-        quantities = [Quantity(name, 1, carried.count(name), *known[name]) for name in dict.fromkeys(carried)]
+        carried = {signal.carries for signal in inputs.signals}
+        if len(carried) > 1:
+            raise ValueError(f"expected signals that carry the same, as kernels index all alike, got {carried}")
+        quantities = [Quantity(name, 1, len(inputs.signals), *known[name]) for name in carried.pop()]
         length = Quantity("length", format=self.light_format, stage="history_length")
         return Resource("moments", "moments", (length, *quantities), Life.PAIR)
 
     def demodulate_pass(self, inputs: Inputs) -> Pass:
         """The user's arrays to planes: made safe, and light divided by albedo."""
         light = tuple(user(signal.field, f"radiance_{number}") for number, signal in enumerate(inputs.signals))
-        divides = inputs.albedo and any(signal.divided_by == "albedo" for signal in inputs.signals)
-        optional = [name for name, read in (("albedo", divides), ("emission", inputs.subtracts_emission)) if read]
+        given = (("albedo", inputs.divides_by_albedo), ("emission", inputs.emission_signal >= 0))
+        optional = [name for name, read in given if read]
         surface = ("normal", "depth", "id") if inputs.id else ("normal", "depth")
         return Pass(
             "modulate",
@@ -148,7 +150,8 @@ class TemporalFilter(Filter):
 
     def last_passes(self, inputs: Inputs, filtered: Resource) -> tuple[Pass, ...]:
         """Filtered light to the user's array: times albedo, and antialiased if so set."""
-        optional = [name for name in ("albedo", "emission") if getattr(inputs, name)]
+        given = (("albedo", inputs.divides_by_albedo), ("emission", inputs.emission))
+        optional = [name for name, read in given if read]
         picture = Resource("modulated", "picture", (Quantity("color", 3, stage="modulated"),))
         modulate = Pass(
             "modulate",

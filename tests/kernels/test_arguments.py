@@ -57,7 +57,7 @@ def names(kernel: cl.Kernel) -> Iterator[str]:
 
 def disagreement(context: cl.Context, entry: Pass, pipeline: Pipeline) -> str:
     """What a pass declares and what its kernel takes, or nothing where that is the same."""
-    taken = kernels(context, entry.source, options(entry, pipeline))[entry.entry]
+    taken = kernels(context, entry.source, options(entry, pipeline))[entry.kernel]
     return "" if taken == entry.arguments else f"{entry.label}: declared {entry.arguments}, taken {taken}"
 
 
@@ -82,6 +82,6 @@ def test_buffers_that_changed_places_are_found(context: cl.Context) -> None:
 
 def test_numbers_that_changed_places_are_found(context: cl.Context) -> None:
     pipeline = pipeline_of("eaw", Inputs(), taa=False)
-    (temporal,) = (entry for entry in pipeline.passes if entry.entry == "temporal")
+    (temporal,) = (entry for entry in pipeline.passes if entry.kernel == "temporal")
     swapped = replace(temporal, scalars=dict(reversed(temporal.scalars.items())))
     assert disagreement(context, swapped, pipeline)

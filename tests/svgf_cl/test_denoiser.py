@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -22,6 +22,7 @@ from svgf_cl.frame import Shape
 from svgf_cl.oracle.accuracy import DECISION, largest_channel, relative_error
 from svgf_cl.oracle.svgf import Oracle
 from tests.denoising import feed, vector_width
+from tests.faults import failing
 from tests.frames import FULL, PLAIN, SHAPE, SPLIT, TINY, bumpy_sequence, only, wall
 from tests.oracle import DECIDED_OTHERWISE, PIPELINE_TOLERANCE
 from tests.svgf_cl.device.test_user_arrays import on_device
@@ -214,6 +215,14 @@ class TestUpdate:
         assert den.update(chosen) is True
         assert_array_equal(den.denoise(after), Denoiser(SHAPE, settings=chosen).denoise(after))
 
+    def test_what_it_shows_is_never_of_a_plan_that_has_not_run(self) -> None:
+        den = Denoiser(SHAPE, keep_stages=True)
+        den.denoise(bumpy_sequence(FULL, count=1)[0])
+        assert den.update(Settings(iterations=3)) is True
+        assert (den.stages, den.profile()) == ([], {})
+        with pytest.raises(SvgfError, match="none before a frame"):
+            den.stage("level_1")
+
     def test_a_cut_before_it_stays_a_cut(self) -> None:
         before, after = bumpy_sequence(FULL, count=2)
         den = Denoiser(SHAPE)
@@ -266,6 +275,12 @@ class TestWarmUp:
         assert den.stages == []
         assert_array_equal(den.denoise(frame), Denoiser(SHAPE).denoise(frame))
 
+    def test_other_fields_in_mid_sequence_are_told_by_its_name(self) -> None:
+        den = Denoiser(SHAPE)
+        den.denoise(bumpy_sequence(FULL, count=1)[0])
+        with pytest.raises(ArgumentError, match=r"warm_up\(inputs\): expected the fields color, .* reset, got direct"):
+            den.warm_up(Inputs.every())
+
     def test_takes_inputs_alone(self) -> None:
         with pytest.raises(SvgfError, match=r"expected Inputs\(\.\.\.\) or Inputs.of\(frame\), got 'color'"):
             Denoiser(TINY).warm_up("color")  # type: ignore[arg-type]
@@ -288,7 +303,7 @@ def test_a_fork_is_told_at_once() -> None:
     """Drivers' threads do not survive it: without a word the child would wait for ever."""
     den = Denoiser(TINY)
     den.denoise(wall(TINY))
-    calls = (lambda: den.denoise(wall(TINY)), lambda: Denoiser(TINY), devices.list_devices)
+    calls = (lambda: den.denoise(wall(TINY)), lambda: Denoiser(TINY), lambda: den.stages, devices.list_devices)
     child = os.fork()
     if not child:
         told = 0
@@ -297,6 +312,7 @@ def test_a_fork_is_told_at_once() -> None:
                 call()
             except DeviceError as error:
                 told += "forked" in str(error)
+        den.close()  # as at the end of a `with`, without a word
         os._exit(told)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == len(calls)
     den.denoise(wall(TINY))
@@ -310,10 +326,38 @@ class TestAfterPass:
         assert tuple(told) == den.events
         assert [label for label, _ in told] == list(den.profile())
 
+    @pytest.mark.parametrize(
+        "call", [lambda den: den.reset(), lambda den: den.denoise(wall(TINY)), lambda den: den.stage("depth")]
+    )
+    def test_may_not_call_the_denoiser(self, call: Callable[[Denoiser], object]) -> None:
+        dens: list[Denoiser] = []
+        dens.append(Denoiser(TINY, after_pass=lambda *_: call(dens[0]) and None))
+        with pytest.raises(SvgfError, match="expected no call from after_pass"):
+            dens[0].denoise(wall(TINY))
+        dens[0].reset()  # and goes on
+
     def test_waiting_in_it_changes_no_pixel(self) -> None:
         plain, waits = Denoiser(SHAPE), Denoiser(SHAPE, after_pass=lambda _, event: event.wait())
         for frame in bumpy_sequence(SPLIT, count=2):
             assert_array_equal(waits.denoise(frame), plain.denoise(frame))
+
+
+@pytest.mark.parametrize("before", [1, 2])
+def test_a_cut_that_fails_leaves_all_in_step(before: int) -> None:
+    """Halves of pairs and launches: what follows is what it is with one that never failed."""
+    frames = bumpy_sequence(FULL, count=5)
+    den, plain = Denoiser(SHAPE, settings=TAA), Denoiser(SHAPE, settings=TAA)
+    for frame in frames[:before]:  # with either half in turn
+        den.denoise(frame)
+    den.reset()
+    with failing("enqueue_fill_buffer", 0, no_such_call), pytest.raises(DeviceError, match="past is forgotten"):
+        den.denoise(frames[2])
+    for frame in frames[2:]:
+        assert_array_equal(den.denoise(frame), plain.denoise(frame))
+
+
+def no_such_call(*_: object, **__: object) -> None:
+    raise cl.RuntimeError("clEnqueueFillBuffer failed: OUT_OF_RESOURCES")
 
 
 class TestStages:

@@ -174,8 +174,8 @@ def test_other_sizes_and_other_filters_come_and_go() -> None:
         assert_allclose(den.denoise(frame), sums(Weigh(), [frame])[0], rtol=1e-6)
     assert den.update(Denoiser(SHAPE).settings)
     assert_allclose(den.denoise(wall()), 0.5, rtol=1e-6)
-    assert den.update(Weigh())  # says itself what it does not know, so it is no cut, and frames count on
-    expected = 100 + Weigh().scale * Weigh().gain * WEIGHTS["odd"][1] * 0.5 + TABLE[:, 0]
+    assert den.update(Weigh())  # of another filter's past it knows nothing, so frames count from 0
+    expected = 100 + Weigh().scale * Weigh().gain * WEIGHTS["odd"][0] * 0.5 + TABLE[:, 0]
     assert_allclose(den.denoise(wall()), np.broadcast_to(expected, (*SHAPE, 3)), rtol=1e-6)
 
 
@@ -206,6 +206,6 @@ def test_taps_beyond_the_halo_are_refused() -> None:
 
 def reaching(resource: Resource, far: int) -> Pipeline:
     """Passes of which the second reads so many pixels away."""
-    write = Pass("weigh", "weigh", reads=(user("color"),), writes=(access(resource),))
-    read = Pass("weigh", "weigh", reads=(access(resource, taps={"color": grid(1, far)}),), writes=(user(OUT),))
+    write = Pass("weigh", "weigh", level=1, reads=(user("color"),), writes=(access(resource),))
+    read = Pass("weigh", "weigh", level=2, reads=(access(resource, taps={"color": grid(1, far)}),), writes=(user(OUT),))
     return Pipeline((write, read))

@@ -19,6 +19,6 @@ def test_accumulated_light_is_the_colour_history() -> None:
 
 def test_there_is_no_variance_of_light() -> None:
     pipeline = Eaw().pipeline(Inputs.every())
-    assert "variance" not in {entry.entry for entry in pipeline.passes}
+    assert "variance" not in {entry.kernel for entry in pipeline.passes}
     assert "ILLUMINATION_VARIANCE" not in pipeline.defines
     assert pipeline.defines["GUIDED_BY_VARIANCE"] == 0

@@ -41,5 +41,13 @@ def test_decoding(format_: Format, elements: list[float], expected: list[float])
     assert format_.nbytes == stored.itemsize
 
 
+@pytest.mark.parametrize("format_", Format)
+@pytest.mark.parametrize("value", [0.0, 0.25, 1.0])
+def test_encoding_is_the_way_back(format_: Format, value: float) -> None:
+    element = format_.encoded(value)
+    assert (element.dtype, element.shape) == (format_.dtype, ())
+    assert_allclose(format_.decoded(element), value, atol=1 / SNORM_MAX)
+
+
 def test_the_greatest_16_bit_float_is_numpys() -> None:
     assert_array_equal(HALF_MAX, np.finfo(np.float16).max)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
+from numpy.testing import assert_array_equal
 
 from svgf_cl import Eaw, Inputs, Settings
 from svgf_cl.device.layout import HALO
@@ -37,7 +39,7 @@ class TestResource:
         ids=["32 bits behind 16", "two in 16 bits behind one in 32"],
     )
     def test_what_kernels_could_not_address_is_refused(self, formats: tuple[Format, ...]) -> None:
-        with pytest.raises(ValueError, match="mixed: expected at most one quantity in 16 bits, behind those in 32"):
+        with pytest.raises(ValueError, match="mixed: expected quantities all in 32 bits, all in 16, or one in 16"):
             Resource("mixed", "mixed", tuple(Quantity(f"q{i}", format=each) for i, each in enumerate(formats)))
 
 
@@ -62,6 +64,27 @@ class TestPipeline:
         passes = (Pass("a", "a", writes=(access(RGB), access(other))),)
         with pytest.raises(ValueError, match="other: expected PICTURE_COLOR 0 as in others, got 1"):
             _ = Pipeline(passes).defines
+
+    def test_a_read_of_what_nobody_wrote_is_refused(self) -> None:
+        with pytest.raises(ValueError, match="b: expected a buffer that was written before, got rgb"):
+            Pipeline((Pass("b", "b", reads=(access(RGB),)), Pass("a", "a", writes=(access(RGB),))))
+
+    def test_names_that_would_hide_others_are_refused(self) -> None:
+        with pytest.raises(ValueError, match="passes and stages of different names, got a, a"):
+            Pipeline((Pass("a", "a"), Pass("a", "a")))
+        with pytest.raises(ValueError, match="a: expected arguments of different names, got size, out, out"):
+            Pass("a", "a", reads=(user("color", "out"),), writes=(user("out"),))
+
+    def test_constant_arrays_are_apart_from_their_owners(self) -> None:
+        weights = np.ones(3)
+        entry = Pass("a", "a", arrays={"weights": weights})
+        weights[:] = 2
+        assert_array_equal(entry.arrays["weights"], 1)
+        with pytest.raises(ValueError, match="read-only"):
+            entry.arrays["weights"][0] = 2
+
+    def test_nan_equals_nan(self) -> None:
+        assert Quantity("q", unknown=float("nan")) == Quantity("q", unknown=math.nan)
 
     def test_numbers_alone_make_no_other_kernel(self) -> None:
         inputs = Inputs.every()

@@ -13,7 +13,7 @@ from tests.svgf_cl.filters.strategies import every_inputs
 @given(every_inputs, st.integers(1, 5), st.booleans())
 def test_levels_double_their_step(inputs: Inputs, iterations: int, taa: bool) -> None:
     passes = Settings(iterations=iterations, taa=taa).pipeline(inputs).passes
-    steps = [entry.scalars["step"] for entry in passes if entry.entry == "atrous"]
+    steps = [entry.scalars["step"] for entry in passes if entry.kernel == "atrous"]
     assert steps == [2**level for level in range(iterations)]
 
 

@@ -24,7 +24,7 @@ def test_covers_every_stage_and_the_result(chosen: Filter) -> None:
     found = deviations(frames, chosen)
     assert set(found) == {*den.stages, "out"}
     assert {deviation.kernel for deviation in found.values()} == {
-        entry.entry for entry in den.settings.pipeline(Inputs.of(frames[0])).passes
+        entry.kernel for entry in den.settings.pipeline(Inputs.of(frames[0])).passes
     }
 
 
