@@ -54,7 +54,7 @@ class OidnFilter:
         self._device = pyoidn.Device(pyoidn.OIDN_DEVICE_TYPE_CPU)  # one a filter, or they would share their memory
         self._device.set_int("numThreads", threads)
         self._device.commit()
-        self._filter = pyoidn.OidnFilter(self._device, pyoidn.OIDN_FILTER_TYPE_RT)
+        self._filter = pyoidn.Filter(self._device, pyoidn.OIDN_FILTER_TYPE_RT)
         for name, image in self._images.items():
             self._filter.set_image(name, image, pyoidn.OIDN_FORMAT_FLOAT3)
         self._filter.set_bool("hdr", True)
@@ -71,7 +71,7 @@ class OidnFilter:
             self._images[name][:] = getattr(frame, name)
 
     def execute(self) -> None:
-        """OidnFilter what was loaded; wait for the end."""
+        """Filter what was loaded; wait for the end."""
         self._filter.execute()
 
     def check(self) -> None:

@@ -7,13 +7,23 @@ import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 import pyopencl as cl
 import pyopencl.array as cl_array
 
-from svgf_cl.device.arguments import check_filter, check_inputs, check_queue, check_shape, check_tuning, held, layout_of
+from svgf_cl.device.arguments import (
+    AfterPass,
+    check_filter,
+    check_hook,
+    check_inputs,
+    check_queue,
+    check_shape,
+    check_tuning,
+    held,
+    layout_of,
+)
 from svgf_cl.device.events import pending
 from svgf_cl.device.opencl_errors import allocate, opencl_errors
 from svgf_cl.device.process import check_process, is_forked
@@ -24,8 +34,8 @@ from svgf_cl.filters import Settings
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.pipeline import OUT, Pipeline
 from svgf_cl.filters.signals import Inputs
-from svgf_cl.frame import Frame, Shape, UserArray
-from svgf_cl.plan import AfterPass, Plan, Workplace
+from svgf_cl.frame import Frame, Shape, UserArray, extent
+from svgf_cl.plan import Plan, Workplace
 
 # What to do after an error of the device.
 NOT_BEGUN = "the frame was not begun, so the next one goes on from the last; if this stays, make a new Denoiser"
@@ -83,7 +93,7 @@ class Denoiser:
         self._settings = Settings() if settings is None else check_filter(settings)
         self._queue = check_queue(queue)
         self._tuning = check_tuning(tuning, self._queue.device)
-        self._after_pass = after_pass
+        self._after_pass = check_hook(after_pass)
         layout = layout_of(self._shape, self._tuning, self._settings)
         self._workplace = Workplace(held(self._queue), layout, self._tuning, keep_stages)
         self._arrays: UserArrays | None = UserArrays(self._workplace.queue)
@@ -137,8 +147,8 @@ class Denoiser:
         FrameError
             If a field is missing, of another shape or type, or on another context. The call counts as not made.
         ArgumentError
-            If the set of fields changed, if `out` is of another shape or type or is the memory of a field, or if an
-            event failed. The call counts as not made.
+            If the set of fields changed, if `out` is of another shape or type, if as an Array it is the memory of a
+            field, or if an event failed. The call counts as not made.
         DeviceError
             If the device has no room, or cannot build a kernel: the call counts as not made. If it breaks off in the
             middle of the frame: the past is forgotten, as by `reset`.
@@ -221,6 +231,14 @@ class Denoiser:
 
     def __enter__(self) -> Denoiser:
         return self
+
+    def __repr__(self) -> str:
+        device = self._workplace.queue.device
+        place = f"{device.name} ({device.platform.name})"
+        return f"<Denoiser of {extent(self._shape)} pixels, {self._settings.name}, on {place}>"
+
+    def __reduce__(self) -> NoReturn:
+        raise SvgfError("a Denoiser cannot be copied or sent to another process; make another one there")
 
     def __exit__(self, *_: object) -> None:
         self.close()

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pyopencl as cl
 
 from svgf_cl.device import programs
+from svgf_cl.device.arguments import AfterPass
 from svgf_cl.device.buffers import Buffers
 from svgf_cl.device.launch import Argument, Grid, Launch, scalar_arguments
 from svgf_cl.device.layout import HALO, Layout
@@ -19,9 +20,6 @@ from svgf_cl.device.tuning import Tuning
 from svgf_cl.errors import SvgfError
 from svgf_cl.filters.pipeline import Access, Buffer, Pass, Pipeline, Resource
 from svgf_cl.filters.stages import Stage, stages
-
-# Is told the label and the event of every pass as soon as it is on the queue.
-AfterPass = Callable[[str, cl.Event], None]
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import Annotated
 
@@ -67,8 +68,13 @@ def parse_settings(filter_: str, texts: Iterable[str]) -> Filter:
     values: dict[str, Value] = {}
     for text in texts:
         name, _, value = text.partition("=")
-        if name not in known:
-            raise SettingsError(f"--set: expected NAME=VALUE with a name out of {', '.join(known)}, got {text!r}")
+        if name not in known or not value:
+            near = difflib.get_close_matches(name, known, 1, 0.75)
+            hint = f"; did you mean {near[0]}=VALUE?" if near else ""
+            raise SettingsError(
+                f"--set: expected NAME=VALUE with a name out of {', '.join(known)} (filter {filter_}), got {text!r}"
+                + hint
+            )
         try:
             values[name] = known[name].parse(value)
         except (KeyError, ValueError) as error:
@@ -82,15 +88,26 @@ def describe(domain: Domain) -> str:
 
 
 def settings_help() -> str:
-    """Describe every setting with its range and default, for the help text; of further filters what is theirs alone."""
-    told: set[str] = set()
-    parts = []
-    for name, kind in FILTERS.items():
-        known, default = domains(kind), defaults(kind)
-        own = [f"{each}: {describe(known[each])} [{default[each]}]" for each in known if each not in told]
-        parts.append(f"{name}{' also' if told else ''}: {'; '.join(own)}.")
-        told |= set(known)
-    return f"Change a setting of the filter; may be repeated. {' '.join(parts)}"
+    """Describe every setting with its range and default, for the help text: first those that all filters have."""
+    shared = set.intersection(*(set(domains(kind)) for kind in FILTERS.values()))
+    parts = ["All filters have " + "; ".join(described(kind, name) for kind, name in first_with(shared))]
+    for filter_, kind in FILTERS.items():
+        own = [described(kind, name) for name in domains(kind) if name not in shared]
+        parts.append(f"{filter_} also has " + "; ".join(own))
+    return f"Change a setting of the filter; may be repeated. {'. '.join(parts)}."
+
+
+def first_with(names: Collection[str]) -> list[tuple[type[Filter], str]]:
+    """These settings in the order of the first filter, each with that filter."""
+    kind = next(iter(FILTERS.values()))
+    return [(kind, name) for name in domains(kind) if name in names]
+
+
+def described(kind: type[Filter], name: str) -> str:
+    """A setting, what it may be, and its default, as one writes them on the command line."""
+    default = defaults(kind)[name]
+    text = {True: "on", False: "off"}[default] if isinstance(default, bool) else default
+    return f"{name}: {describe(domains(kind)[name])} [{text}]"
 
 
 FilterName = Annotated[str, typer.Option("--filter", metavar="NAME", help=f"The filter: {' or '.join(FILTERS)}.")]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import operator
 import warnings
+from collections.abc import Callable
 
 import pyopencl as cl
 
@@ -13,16 +14,28 @@ from svgf_cl.device.layout import Layout
 from svgf_cl.device.process import check_process
 from svgf_cl.device.tuning import Tuning, best_tuning
 from svgf_cl.errors import SvgfError, shown
+from svgf_cl.filters import FILTERS
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Shape
+
+# Is told the label and the event of every pass as soon as it is on the queue.
+AfterPass = Callable[[str, cl.Event], None]
 
 
 def check_filter(settings: Filter) -> Filter:
     """Raise `SvgfError` for anything that is no filter's settings."""
     if not isinstance(settings, Filter):
-        raise SvgfError(f"Denoiser: expected settings=Settings(...), got {shown(settings)}")
+        kinds = " or ".join(f"{kind.__name__}(...)" for kind in FILTERS.values())
+        raise SvgfError(f"Denoiser: expected settings={kinds}, got {shown(settings)}")
     return settings
+
+
+def check_hook(after_pass: AfterPass | None) -> AfterPass | None:
+    """Raise `SvgfError` for anything that cannot be called."""
+    if after_pass is not None and not callable(after_pass):
+        raise SvgfError(f"Denoiser: expected after_pass=function(label, event), got {shown(after_pass)}")
+    return after_pass
 
 
 def check_inputs(inputs: Inputs) -> Inputs:
@@ -71,7 +84,7 @@ def check_tuning(tuning: Tuning | None, device: cl.Device) -> Tuning:
 def check_shape(shape: Shape) -> Shape:
     """(height, width) as plain integers; `SvgfError` unless both are whole numbers of at least 1."""
     try:
-        height, width = (operator.index(side) for side in shape)
+        height, width = (operator.index(side) for side in shape if not isinstance(side, bool))
     except (TypeError, ValueError) as error:
         raise SvgfError(f"Denoiser: expected shape (height, width), got {shown(shape)}") from error
     if height < 1 or width < 1:

@@ -39,6 +39,6 @@ def check_event(name: str, event: cl.Event, context: cl.Context) -> None:
     if not isinstance(event, cl.Event):
         raise wrong(name, "a pyopencl.Event to wait for", type(event).__name__)
     if event.get_info(cl.event_info.CONTEXT) != context:
-        raise wrong(name, "an event in the context of Denoiser(queue=...)", "one of another context")
+        raise wrong(name, "an event, or an Array, in the context of Denoiser(queue=...)", "one of another context")
     if (status := event.command_execution_status) < 0:
         raise wrong(name, "an event that ends well", f"one whose command failed with status {status}")

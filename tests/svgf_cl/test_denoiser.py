@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import os
+import pickle
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
@@ -174,6 +176,16 @@ def test_what_it_is_made_of_cannot_be_assigned(name: str) -> None:
         setattr(den, name, getattr(den, name))
 
 
+@pytest.mark.parametrize("send", [copy.copy, copy.deepcopy, pickle.dumps])
+def test_it_cannot_be_copied_or_sent(send: Callable[[Denoiser], object]) -> None:
+    with pytest.raises(SvgfError, match="a Denoiser cannot be copied or sent to another process"):
+        send(Denoiser(TINY))
+
+
+def test_it_says_what_it_is() -> None:
+    assert "Denoiser of 9x7 pixels, eaw, on " in repr(Denoiser(TINY, settings=Eaw()))
+
+
 class TestUpdate:
     def test_numbers_change_at_once_and_nothing_is_built_or_lost(
         self, queue: cl.CommandQueue, monkeypatch: pytest.MonkeyPatch
@@ -238,7 +250,7 @@ class TestUpdate:
         assert "level_2" not in den.stages
 
     def test_takes_settings_alone(self) -> None:
-        with pytest.raises(SvgfError, match=r"expected settings=Settings\(\.\.\.\), got None"):
+        with pytest.raises(SvgfError, match=r"expected settings=Settings\(\.\.\.\) or Eaw\(\.\.\.\), got None"):
             Denoiser(TINY).update(None)  # type: ignore[arg-type]
 
 
@@ -336,6 +348,10 @@ class TestAfterPass:
             dens[0].denoise(wall(TINY))
         dens[0].reset()  # and goes on
 
+    def test_must_be_callable(self) -> None:
+        with pytest.raises(SvgfError, match=r"expected after_pass=function\(label, event\), got 3"):
+            Denoiser(TINY, after_pass=3)  # type: ignore[arg-type]
+
     def test_waiting_in_it_changes_no_pixel(self) -> None:
         plain, waits = Denoiser(SHAPE), Denoiser(SHAPE, after_pass=lambda _, event: event.wait())
         for frame in bumpy_sequence(SPLIT, count=2):
@@ -354,6 +370,7 @@ def test_a_cut_that_fails_leaves_all_in_step(before: int) -> None:
         den.denoise(frames[2])
     for frame in frames[2:]:
         assert_array_equal(den.denoise(frame), plain.denoise(frame))
+        assert_array_equal(den.stage("history_length"), plain.stage("history_length"))
 
 
 def no_such_call(*_: object, **__: object) -> None:

@@ -18,9 +18,25 @@ def test_settings_are_read_by_their_own_type() -> None:
 
 def test_each_filter_has_its_own() -> None:
     assert parse_settings("eaw", ["sigma_color=3"]) == Eaw(sigma_color=3.0)
-    with pytest.raises(SettingsError, match=r"out of .*sigma_color, got 'sigma_luminance=4'"):
+    with pytest.raises(SettingsError, match=r"out of .*sigma_color .filter eaw., got 'sigma_luminance=4'"):
         parse_settings("eaw", ["sigma_luminance=4"])
 
 
 def test_help_lists_every_setting_of_every_filter() -> None:
     assert all(f"{name}: " in settings_help() for kind in FILTERS.values() for name in domains(kind))
+
+
+def test_help_tells_what_each_filter_has() -> None:
+    shared, _, own = settings_help().partition("svgf also has ")
+    assert "iterations: a whole number in 1..5 [5]" in shared
+    assert "taa: on or off [off]" in shared
+    assert "sigma_luminance" in own.partition("eaw also has ")[0]
+    assert "sigma_color" in own.partition("eaw also has ")[2]
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"), [("sigma_detph=2", "did you mean sigma_depth=VALUE"), ("iterations", "filter svgf.*, got 'iter")]
+)
+def test_a_slip_of_the_hand_gets_a_hint(text: str, hint: str) -> None:
+    with pytest.raises(SettingsError, match=hint):
+        parse_settings("svgf", [text])
