@@ -9,6 +9,7 @@ import numpy as np
 import pyopencl as cl
 from numpy.typing import NDArray
 
+from svgf_cl.compare.rounding import counted_against, largest_channel
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.filters import Settings
 from svgf_cl.filters.filter import Filter
@@ -19,10 +20,6 @@ from svgf_cl.oracle.temporal import Past, seen_guides
 
 Single = NDArray[np.float32]
 
-# An error counts against the value plus this share of the stage's mean: a relative error where there is something to be
-# relative to, an absolute one near zero. Of a colour, the value is the greatest of its channels: kernels keep luminance
-# in place of green, and a green that hardly contributes to it cannot be known as well.
-SCALE_SHARE = 1e-3
 # A pixel further off than this was decided otherwise (a tap accepted or refused within rounding of a threshold).
 DECISION = 1e-3
 
@@ -38,7 +35,7 @@ class Deviation:
     absolute : float
         Largest error of the pixels decided alike, in the stage's own unit.
     relative : float
-        The largest as described at `SCALE_SHARE`.
+        The largest as described at `svgf_cl.compare.rounding.SCALE_SHARE`.
     ulps : float
         The largest in units in the last place of what the relative error counts against, as float32.
     decided_otherwise : float
@@ -116,21 +113,3 @@ def worst(found: Sequence[Deviation]) -> Deviation:
 def wide(values: Single) -> Array:
     """float32 to float64."""
     return values.astype(np.float64)
-
-
-def largest_channel(colors: Array) -> Array:
-    """The greatest |channel| of each colour: (..., 3) to (..., 1)."""
-    largest: Array = np.abs(colors).max(axis=-1, keepdims=True)
-    return largest
-
-
-def counted_against(size: Array) -> Array:
-    """What an error is relative to: the size of a value, and `SCALE_SHARE` of the mean size; never 0."""
-    counted: Array = size + (SCALE_SHARE * size.mean() or 1.0)
-    return counted
-
-
-def relative_error(got: Single, expected: Array, size: Array | None = None) -> Array:
-    """|got - expected| over what it counts against, of the same shape; the size is |expected| if not given."""
-    error: Array = np.abs(got - expected) / counted_against(np.abs(expected) if size is None else size)
-    return error

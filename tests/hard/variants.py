@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from svgf_cl import Denoiser, Frame, Settings
+from svgf_cl.compare.rounding import largest_channel
 from svgf_cl.frame import REQUIRED, Shape
-from svgf_cl.oracle.accuracy import largest_channel
 from svgf_cl.oracle.svgf import Oracle
 from tests.frames import FULL, SHAPE, SPLIT, only, wall
 

@@ -8,6 +8,7 @@ from importlib import resources
 import numpy as np
 import pytest
 
+from svgf_cl.filters.formats import HALF_MAX
 from svgf_cl.oracle import svgf, temporal, wavelet
 
 # By the kernels' name. Where there are two values the second is that of 16-bit floats (HALF_HISTORY), or of 3x3 taps.
@@ -41,3 +42,7 @@ def stated(name: str) -> set[np.float32]:
 @pytest.mark.parametrize("name", EXPECTED)
 def test_kernels_and_oracle_state_the_same(name: str) -> None:
     assert stated(name) == {np.float32(value) for value in EXPECTED[name]}
+
+
+def test_light_in_16_bits_ends_where_its_format_does() -> None:
+    assert temporal.ILLUMINATION_MAX[True] == HALF_MAX
