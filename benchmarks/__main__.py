@@ -53,7 +53,7 @@ def everything(
     findings.write(make_folder(folder / "speed-against-error"))
     sections.append(findings.section)
     write(run, folder, sections)
-    shown = [tables.stage_table(run, device) for device in run.devices]
+    shown = [tables.benchmark_table(run, device) for device in run.devices]
     for table in (
         *shown,
         *(table for section in sections for table in section.tables),

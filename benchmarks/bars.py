@@ -71,11 +71,11 @@ def times_faster(rival: str, settings: str) -> Callable[[Results], float]:
     return measure
 
 
-def roofline(stage: str) -> Callable[[Results], float]:
-    """Percent of a stage's roofline."""
+def roofline(row: str) -> Callable[[Results], float]:
+    """Percent of a row's roofline."""
 
     def measure(results: Results) -> float:
-        share = find(results, stage=stage, clock=EVENT, **USUAL).roofline
+        share = find(results, row=row, clock=EVENT, **USUAL).roofline
         assert share is not None
         return 100 * share
 
@@ -84,14 +84,14 @@ def roofline(stage: str) -> Callable[[Results], float]:
 
 def second_signal(results: Results) -> float:
     """Percent that a second signal adds to a frame's time."""
-    one, two = (find(results, stage="frame", variant=f"signals{count}", clock=EVENT).median for count in (1, 2))
+    one, two = (find(results, row="frame", variant=f"signals{count}", clock=EVENT).median for count in (1, 2))
     return 100 * (two / one - 1)
 
 
 def nonlinearity(results: Results) -> float:
     """Percent by which the time per pixel differs at most from that at the usual size, in larger frames."""
-    usual = find(results, stage="frame", clock=EVENT, **USUAL)
-    frames = [r for r in results if (r.facts.get("stage"), r.facts.get("variant"), r.clock) == ("frame", "", EVENT)]
+    usual = find(results, row="frame", clock=EVENT, **USUAL)
+    frames = [r for r in results if (r.facts.get("row"), r.facts.get("variant"), r.clock) == ("frame", "", EVENT)]
     larger = [per_pixel(r) for r in frames if r.facts["height"] > usual.facts["height"]]
     if not larger:
         raise LookupError("only one size")
@@ -105,28 +105,28 @@ def per_pixel(result: Result) -> float:
 
 def memory(results: Results) -> float:
     """MB held by the denoiser of one signal at 1920x1080."""
-    return float(find(results, stage="frame", width=1920, height=1080, variant="", clock=EVENT).facts["planes"]) / 1e6
+    return float(find(results, row="frame", width=1920, height=1080, variant="", clock=EVENT).facts["planes"]) / 1e6
 
 
 def start(kind: str) -> Callable[[Results], float]:
     """Seconds to the first frame."""
-    return lambda results: find(results, stage=f"start {kind}").median
+    return lambda results: find(results, row=f"start {kind}").median
 
 
 def enqueue(results: Results) -> float:
     """Milliseconds that a frame costs the calling thread."""
-    return 1e3 * find(results, stage="enqueue", clock=HOST, **USUAL).median
+    return 1e3 * find(results, row="enqueue", clock=HOST, **USUAL).median
 
 
 def over_embree(results: Results) -> float:
     """Median over the rounds: how many times as long the tracer took for a frame as raw Embree for the same rays."""
-    frame, rays = (find(results, stage=f"tracer {what}", clock=HOST, **USUAL) for what in ("frame", "embree"))
+    frame, rays = (find(results, row=f"tracer {what}", clock=HOST, **USUAL) for what in ("frame", "embree"))
     return float(np.median(np.divide(frame.seconds, rays.seconds)))
 
 
 def tracer_memory(results: Results) -> float:
     """GB that a new process held at most."""
-    return float(find(results, stage="tracer start load", width=1920, height=1080).facts["peak"]) / 1e9
+    return float(find(results, row="tracer start load", width=1920, height=1080).facts["peak"]) / 1e9
 
 
 def race_bars(settings: str) -> Iterator[Bar]:
@@ -157,7 +157,7 @@ def against_pocl(pocl: Results) -> Bar:
     """Intel's runtime has to be as fast as PoCL, whose results are given."""
 
     def measure(results: Results) -> float:
-        intel, other = (find(each, stage="frame", clock=EVENT, **USUAL).median for each in (results, pocl))
+        intel, other = (find(each, row="frame", clock=EVENT, **USUAL).median for each in (results, pocl))
         return intel / other
 
     return Bar("a frame's time, Intel's runtime over PoCL", 1, "", measure)

@@ -118,5 +118,5 @@ def result(
 ) -> Result:
     """A result with its name."""
     words = ["tracer", *what.lower().split(), variant, extent(shape)]
-    stage = {"stage": f"tracer {what}", "height": shape[0], "width": shape[1], "variant": variant}
-    return Result(".".join(filter(None, words)), device, clock, tuple(seconds), stage | facts)
+    usual = {"row": f"tracer {what}", "height": shape[0], "width": shape[1], "variant": variant}
+    return Result(".".join(filter(None, words)), device, clock, tuple(seconds), usual | facts)

@@ -24,7 +24,7 @@ def tables(results: Results) -> list[Table]:
 
 def frame_table(results: Results) -> Table:
     """The frame beside its rays alone, by both clocks, and its error."""
-    frame = find(results, stage=f"tracer {FRAME}", clock=HOST)
+    frame = find(results, row=f"tracer {FRAME}", clock=HOST)
     facts, threads = frame.facts, frame.facts["threads"]
     errors = facts["relmse"], facts["psnr"], 1.0 / (facts["relmse"] * frame.median)
     shown = (f"{value:{spec}}" for value, spec in zip(errors, (".3f", ".2f", ".3g"), strict=True))
@@ -39,9 +39,9 @@ def frame_table(results: Results) -> Table:
 def timed(results: Results, what: str, threads: int) -> Iterator[str]:
     """Time and ratio to raw Embree on all threads, by both clocks."""
     for clock in (HOST, CPU):
-        found = find(results, stage=f"tracer {what}", threads=threads, clock=clock)
+        found = find(results, row=f"tracer {what}", threads=threads, clock=clock)
         yield spread(found)
-        yield ratio(found, find(results, stage=f"tracer {EMBREE}", variant="", clock=clock))
+        yield ratio(found, find(results, row=f"tracer {EMBREE}", variant="", clock=clock))
 
 
 def ratio(slow: Result, fast: Result) -> str:
@@ -52,13 +52,13 @@ def ratio(slow: Result, fast: Result) -> str:
 
 def ray_table(results: Results) -> Table:
     """How many rays of each kind, and how fast Embree is at them by itself."""
-    threads = find(results, stage=f"tracer {FRAME}").facts["threads"]
+    threads = find(results, row=f"tracer {FRAME}").facts["threads"]
     speeds = ("Mray/s, 1 thread", f"Mray/s, {threads} threads", "times faster")
     columns = ("rays", "sent", "asked of Embree in the frame", *speeds)
-    stages = {kind: embree(kind) for kind in KINDS} | {"all": EMBREE}
+    rays = {kind: embree(kind) for kind in KINDS} | {"all": EMBREE}
     rows = [
-        (name, *ray_row(*(find(results, stage=f"tracer {stage}", threads=n, clock=HOST) for n in (1, threads))))
-        for name, stage in stages.items()
+        (name, *ray_row(*(find(results, row=f"tracer {row}", threads=n, clock=HOST) for n in (1, threads))))
+        for name, row in rays.items()
     ]
     return Table("rays of that frame, and how fast raw Embree answers all of them in one tree", columns, rows)
 
@@ -80,24 +80,24 @@ def split_table(results: Results) -> Table:
 
 def split_medians(results: Results) -> dict[str, float]:
     """Seconds of CPU time by part."""
-    return {part: find(results, stage=f"tracer split {part}").median for part in PARTS}
+    return {part: find(results, row=f"tracer split {part}").median for part in PARTS}
 
 
 def start_table(results: Results) -> Table:
     """From the scene's name to a first frame, in new processes."""
-    stages = {
+    starts = {
         "load the scene": "load",
         "of that, build Embree's trees": "trees",
         "first small frame, nothing compiled yet": "cold",
         "first small frame, all compiled before": "warm",
     }
-    rows = [(what, f"{find(results, stage=f'tracer start {stage}').median:.2f}") for what, stage in stages.items()]
+    rows = [(what, f"{find(results, row=f'tracer start {row}').median:.2f}") for what, row in starts.items()]
     return Table("start of a new process", ("", "s"), rows)
 
 
 def memory_table(results: Results) -> Table:
     """What a new process held."""
-    facts = find(results, stage="tracer start load").facts
+    facts = find(results, row="tracer start load").facts
     sizes = {
         "Python and libraries": facts["libraries"],
         "the scene": facts["scene"],

@@ -22,10 +22,10 @@ def plots(run: Run) -> dict[str, Draw]:
     """What can be drawn of a run, by title."""
     found: dict[str, Draw] = {}
     if bars := frame_parts(run):
-        found["A frame, stage by stage"] = lambda axes: draw_frames(axes, bars)
+        found["A frame, pass by pass"] = lambda axes: draw_frames(axes, bars)
     for device in run.devices:
-        if stages := roofline_stages(run, device):
-            found[f"Roofline: {device.platform}"] = bind(draw_roofline, device, stages)
+        if rows := roofline_rows(run, device):
+            found[f"Roofline: {device.platform}"] = bind(draw_roofline, device, rows)
     for over, draw in (("pixels", draw_pixels), ("iterations", draw_iterations), ("cores", draw_cores)):
         if lines := series(run, over):
             found[f"Scaling over {over}"] = bind(draw, lines)
@@ -46,7 +46,7 @@ def frame_parts(run: Run) -> dict[str, dict[tuple[str, str], float]]:
             if facts["kernel"] is None:  # a whole frame, or all levels
                 continue
             bar = found.setdefault(f"{device.platform}\n{facts['width']}x{facts['height']}", {})
-            bar[facts["kernel"], facts["stage"]] = 1e9 * result.median / (facts["width"] * facts["height"])
+            bar[facts["kernel"], facts["row"]] = 1e9 * result.median / (facts["width"] * facts["height"])
     return found
 
 
@@ -66,18 +66,18 @@ def draw_frames(axes: Axes, bars: dict[str, dict[tuple[str, str], float]]) -> No
     axes.legend(fontsize="small", ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.18), frameon=False)
 
 
-def roofline_stages(run: Run, device: DeviceRecord) -> list[Result]:
-    """Stages with a bound at the largest size timed, levels together."""
+def roofline_rows(run: Run, device: DeviceRecord) -> list[Result]:
+    """Rows with a bound at the largest size timed, levels together."""
     found = [r for r in run.of(device, clock=EVENT, variant="") if r.roofline and r.facts["level"] is None]
     largest = max((r.facts["width"] * r.facts["height"] for r in found), default=0)
     return [r for r in found if r.facts["width"] * r.facts["height"] == largest]
 
 
-def draw_roofline(axes: Axes, device: DeviceRecord, stages: Sequence[Result]) -> None:
+def draw_roofline(axes: Axes, device: DeviceRecord, rows: Sequence[Result]) -> None:
     """Operations per second over operations per byte, below the roof of bandwidth and peak."""
     intensity = np.logspace(-1.5, 2.5, 100)
     peak = device.flops
-    working_set = stages[0].facts["bytes"]
+    working_set = rows[0].facts["bytes"]
     roofs = {
         "copy, in cache": max(speed for _, speed in device.bandwidth),
         "copy, out of cache": device.ceilings.bandwidth_at(working_set),
@@ -85,15 +85,15 @@ def draw_roofline(axes: Axes, device: DeviceRecord, stages: Sequence[Result]) ->
     for (label, speed), style in zip(roofs.items(), ("--", "-"), strict=True):
         roof = np.minimum(intensity * speed, peak)
         axes.loglog(intensity, 1e-9 * roof, style, color=COLORS[-1], label=f"{label}: {1e-9 * speed:.0f} GB/s")
-    for index, stage in enumerate(stages):
-        facts, best = stage.facts, min(stage.seconds)
-        label = f"{facts['stage']}: {100 * (stage.roofline or 0):.0f} %, bound by {facts['binds']}"
+    for index, row in enumerate(rows):
+        facts, best = row.facts, min(row.seconds)
+        label = f"{facts['row']}: {100 * (row.roofline or 0):.0f} %, bound by {facts['binds']}"
         axes.plot(
             facts["flops"] / facts["bytes"], 1e-9 * facts["flops"] / best, "o", color=COLORS[index % 7], label=label
         )
     axes.set_xlabel("operations per byte")
     axes.set_ylabel("GFLOP/s")
-    width, height = stages[0].facts["width"], stages[0].facts["height"]
+    width, height = rows[0].facts["width"], rows[0].facts["height"]
     title = f"{width}x{height}, peak {1e-9 * peak:.0f} GFLOP/s"
     axes.legend(fontsize="small", frameon=False, title=title, title_fontsize="small", alignment="left")
 

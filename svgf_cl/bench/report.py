@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from svgf_cl.bench import plots, scaling
 from svgf_cl.bench.compare import comparison, differences
 from svgf_cl.bench.results import Run
-from svgf_cl.bench.tables import Table, device_table, memory_table, stage_table
+from svgf_cl.bench.tables import Table, benchmark_table, device_table, memory_table
 from svgf_cl.io.atomic import written_whole
 
 # Text and lines take the page's own colour, so that they can be read on dark and on light ground.
@@ -90,7 +90,7 @@ def sections(run: Run, old: Run | None) -> Iterator[Section]:
     yield Section("Devices", tables=[device_table(run), memory_table(run)])
     for title, draw in plots.plots(run).items():
         yield Section(title, inline_svg(draw, title))
-    yield Section("Benchmarks", tables=[stage_table(run, device) for device in run.devices])
+    yield Section("Benchmarks", tables=[benchmark_table(run, device) for device in run.devices])
     over = {name: scaling.series(run, name) for name in ("pixels", "iterations", "signals", "cores")}
     yield Section("Scaling", tables=[scaling.table(name, found) for name, found in over.items() if found])
     if old:

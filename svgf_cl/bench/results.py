@@ -78,7 +78,7 @@ class Result:
         "event": the device's, from OpenCL events; "host": the caller's; "cpu": what all threads spend together.
     seconds : tuple of float
     facts : dict
-        What was timed (stage, its kernel and level, width, height, signals, iterations, cores) and, by the device's
+        What was timed (row, its kernel and level, width, height, signals, iterations, cores) and, by the device's
         clock, how near it came to its roofline (bytes moved, loaded, flops, bound in s, binds).
     """
 

@@ -40,7 +40,7 @@ def series(run: Run, over: str) -> list[Series]:
 
 def frames(run: Run, device: DeviceRecord, over: str) -> list[Result]:
     """The frames in which nothing else varies."""
-    results = run.of(device, stage="frame", clock=EVENT)
+    results = run.of(device, row="frame", clock=EVENT)
     return [r for r in results if r.facts["variant"].rstrip("0123456789") == ("" if over == "pixels" else over)]
 
 

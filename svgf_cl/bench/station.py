@@ -125,7 +125,7 @@ class Station:
     def _result(self, case: Case, row: Row, clock: str, seconds: Sequence[float], **more: Any) -> Result:
         passes = {entry.path: entry for entry in case.passes}
         facts = {
-            "stage": " ".join(row),
+            "row": " ".join(row),
             "kernel": passes[row].kernel if row in passes else None,
             "level": passes[row].level if row in passes else None,
             "variant": case.variant,

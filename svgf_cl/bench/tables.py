@@ -54,18 +54,18 @@ def describe(device: DeviceRecord) -> dict[str, str]:
     }
 
 
-def stage_table(run: Run, device: DeviceRecord) -> Table:
+def benchmark_table(run: Run, device: DeviceRecord) -> Table:
     """Every benchmark on a device, event and host time side by side."""
     columns = ("benchmark", "event ms", "host ms", *LIMITS, "rounds")
     by_name: dict[str, dict[str, Result]] = {}
     for result in run.of(device):
-        if "stage" in result.facts:
+        if "row" in result.facts:
             by_name.setdefault(result.name, {})[result.clock] = result
     title = f"{device.platform}, {device.device}: median and half the interquartile range"
-    return Table(title, columns, [stage_row(name, clocks) for name, clocks in by_name.items()])
+    return Table(title, columns, [benchmark_row(name, clocks) for name, clocks in by_name.items()])
 
 
-def stage_row(name: str, clocks: dict[str, Result]) -> tuple[str, ...]:
+def benchmark_row(name: str, clocks: dict[str, Result]) -> tuple[str, ...]:
     """One benchmark by both clocks; a dash for what was not measured."""
     event, host = clocks.get(EVENT), clocks.get(HOST)
     rounds = str((event or clocks[HOST]).stats.rounds)
@@ -80,7 +80,7 @@ def spread(result: Result | None) -> str:
 
 
 def limits(result: Result | None) -> tuple[str, ...]:
-    """How near a stage came to its roofline, what binds it, and what it costs per pixel."""
+    """How near a row came to its roofline, what binds it, and what it costs per pixel."""
     if result is None or result.roofline is None:
         return ("-",) * len(LIMITS)
     facts = result.facts

@@ -55,7 +55,7 @@ def bench(
     earlier = Run.read(old) if old else None
     folder = make_folder(output) if output else None
     run = suite.run(progress_bar)
-    shown = [tables.device_table(run), *(tables.stage_table(run, device) for device in run.devices)]
+    shown = [tables.device_table(run), *(tables.benchmark_table(run, device) for device in run.devices)]
     if earlier:
         shown.append(compare.comparison(earlier, run))
     for table in shown:

@@ -26,7 +26,7 @@ from svgf_cl.io.cache import cache_folder, device_key
 
 # Part of the key under which answers are remembered: raise it whenever the probe asks for more.
 VERSION = 1
-MEMORY = "probes.json"
+STORE = "probes.json"
 TIMEOUT_SECONDS = 60
 
 # Starts the line that holds the answer, as drivers print on their own account, at exit too.
@@ -171,7 +171,7 @@ def _listed() -> Iterator[cl.Device]:
 
 def _recall() -> dict[str, str]:
     try:
-        known = read_json(cache_folder() / MEMORY)
+        known = read_json(cache_folder() / STORE)
     except (OSError, ValueError):
         return {}  # never asked before, unreadable, or damaged: ask the device
     entries = known.items() if isinstance(known, dict) else ()
@@ -181,7 +181,7 @@ def _recall() -> dict[str, str]:
 def _remember(answers: dict[str, str]) -> None:
     try:
         cache_folder().mkdir(parents=True, exist_ok=True)
-        with written_whole(cache_folder() / MEMORY) as aside:
+        with written_whole(cache_folder() / STORE) as aside:
             aside.write_text(json.dumps(answers, indent=1), encoding="utf-8")
     except (OSError, SvgfError) as error:
         warnings.warn(f"svgf_cl will probe its devices in every run: {error}", stacklevel=3)

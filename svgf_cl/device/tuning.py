@@ -18,7 +18,7 @@ from svgf_cl.errors import DeviceError, SvgfError, shown
 from svgf_cl.io.atomic import make_folder, read_json, written_whole
 from svgf_cl.io.cache import cache_folder, device_key
 
-MEMORY = "tunings.json"
+STORE = "tunings.json"
 VECTOR_WIDTHS = (1, 4, 8, 16)  # what kernels/vectors.clh is written for
 
 # On a CPU most of a row, as each work-group costs its driver a tenth of a microsecond or more; on a GPU, where a vector
@@ -102,7 +102,7 @@ def stored_tuning(device: cl.Device) -> Tuning | None:
     A file that cannot be used is no reason not to denoise: it counts as none, with a warning.
     """
     try:
-        entry = read_memory().get(device_key(device))
+        entry = read_store().get(device_key(device))
         if entry is None or entry["kernels"] != kernels_digest():
             return None
         values = entry["tuning"]
@@ -110,7 +110,7 @@ def stored_tuning(device: cl.Device) -> Tuning | None:
         tuning.check(device)
     except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
         warnings.warn(
-            f"{memory()}: cannot be used ({error!r}), so devices run untuned; 'svgf-cl tune' writes it anew",
+            f"{store_path()}: cannot be used ({error!r}), so devices run untuned; 'svgf-cl tune' writes it anew",
             stacklevel=2,
         )
         return None
@@ -125,12 +125,12 @@ def store_tuning(device: cl.Device, tuning: Tuning) -> Path:
     SvgfError
         Where that file cannot be written.
     """
-    return write_memory(known_tunings() | {device_key(device): {"kernels": kernels_digest(), "tuning": asdict(tuning)}})
+    return write_store(known_tunings() | {device_key(device): {"kernels": kernels_digest(), "tuning": asdict(tuning)}})
 
 
 def forget_tuning(device: cl.Device) -> Path:
     """Forget what was stored for a device, and return the file it was in; errors as `store_tuning`."""
-    return write_memory({key: entry for key, entry in known_tunings().items() if key != device_key(device)})
+    return write_store({key: entry for key, entry in known_tunings().items() if key != device_key(device)})
 
 
 @functools.cache
@@ -140,15 +140,15 @@ def kernels_digest() -> str:
     return hashlib.sha256(sources.encode()).hexdigest()[:16]
 
 
-def memory() -> Path:
+def store_path() -> Path:
     """The file of tunings."""
-    return cache_folder() / MEMORY
+    return cache_folder() / STORE
 
 
-def read_memory() -> dict[str, Any]:
+def read_store() -> dict[str, Any]:
     """Every stored tuning by `device_key`; `OSError` or `ValueError` where the file is unreadable or damaged."""
     try:
-        entries = read_json(memory())
+        entries = read_json(store_path())
     except FileNotFoundError:
         return {}
     if not isinstance(entries, dict):
@@ -157,16 +157,16 @@ def read_memory() -> dict[str, Any]:
 
 
 def known_tunings() -> dict[str, Any]:
-    """As `read_memory`, but empty where that fails: whatever was in such a file is lost already."""
+    """As `read_store`, but empty where that fails: whatever was in such a file is lost already."""
     try:
-        return read_memory()
+        return read_store()
     except (OSError, ValueError):
         return {}
 
 
-def write_memory(entries: dict[str, Any]) -> Path:
+def write_store(entries: dict[str, Any]) -> Path:
     """Write the file of tunings, whole or not at all."""
     make_folder(cache_folder())
-    with written_whole(memory()) as aside:
+    with written_whole(store_path()) as aside:
         aside.write_text(json.dumps(entries, indent=1), encoding="utf-8")
-    return memory()
+    return store_path()

@@ -38,7 +38,7 @@ def test_a_race_is_judged_by_the_median_ratio_of_a_round() -> None:
 
 
 def test_stages_are_judged_by_their_own_roofline() -> None:
-    levels, temporal = (result(stage, "event", 10.0, 20.0, **BOUND) for stage in ("atrous", "temporal"))
+    levels, temporal = (result(row, "event", 10.0, 20.0, **BOUND) for row in ("atrous", "temporal"))
     assert rows(levels, temporal) == {
         "a-trous levels, of their roofline": ("Alpha", "at least 50 %", "40 %", "missed"),
         "temporal, of its roofline": ("Alpha", "at least 30 %", "40 %", "holds"),

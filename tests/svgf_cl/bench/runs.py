@@ -28,14 +28,14 @@ def device(selector: str = "0:0", **other: Any) -> DeviceRecord:
     return DeviceRecord(selector=selector, **(facts | other))
 
 
-def result(stage: str, clock: str, *ms: float, on: str = "0:0", **facts: Any) -> Result:
-    """Samples in milliseconds of a stage of 1280x720 frames, or of what `facts` say."""
+def result(row: str, clock: str, *ms: float, on: str = "0:0", **facts: Any) -> Result:
+    """Samples in milliseconds of a row of 1280x720 frames, or of what `facts` say."""
     usual = {"variant": "", "width": 1280, "height": 720, "signals": 1, "iterations": 5, "cores": None}
-    kernel, _, level = stage.partition(" ")
+    kernel, _, level = row.partition(" ")
     is_pass = kernel in ("temporal", "variance", "modulate") or level.isdigit()
-    part = {"stage": stage, "kernel": kernel if is_pass else None, "level": int(level) if level.isdigit() else None}
+    part = {"row": row, "kernel": kernel if is_pass else None, "level": int(level) if level.isdigit() else None}
     known = part | usual | facts
-    words = ["svgf", *stage.split(), known["variant"], f"{known['width']}x{known['height']}"]
+    words = ["svgf", *row.split(), known["variant"], f"{known['width']}x{known['height']}"]
     return Result(".".join(filter(None, words)), on, clock, tuple(1e-3 * value for value in ms), known)
 
 
@@ -60,6 +60,6 @@ def whole_run() -> Run:
         for over in ("iterations", "signals", "cores")
         for count in (1, 2)
     ]
-    stages = [result(stage, "event", 5.0, 8.0, **BOUND) for stage in ("temporal", "atrous 1", "atrous 2", "atrous")]
-    hosts = [result(stage, "host", 6.0, 9.0) for stage in ("temporal", "frame", "frame numpy", "enqueue", "start cold")]
+    stages = [result(row, "event", 5.0, 8.0, **BOUND) for row in ("temporal", "atrous 1", "atrous 2", "atrous")]
+    hosts = [result(row, "host", 6.0, 9.0) for row in ("temporal", "frame", "frame numpy", "enqueue", "start cold")]
     return run(*frames, *variants, *stages, *hosts, left_out=("svgf.frame.9x9 on it: no room",))

@@ -88,7 +88,7 @@ def test_a_browser_shows_all_of_it(tmp_path: Path) -> None:
     assert seen["headings"] == [
         "Bars",
         "Devices",
-        "A frame, stage by stage",
+        "A frame, pass by pass",
         "Roofline: Alpha",
         "Scaling over pixels",
         "Scaling over iterations",

@@ -58,7 +58,7 @@ def test_results_are_found_by_clock_and_facts() -> None:
         result("temporal", "event", 1.0), result("temporal", "host", 1.0), result("frame", "event", 1.0, on="1:0")
     )
     assert list(ours.of(ours.devices[0], clock="host")) == [ours.results[1]]
-    assert list(ours.of(ours.devices[0], stage="frame")) == []
+    assert list(ours.of(ours.devices[0], row="frame")) == []
 
 
 def test_the_revision_is_this_source() -> None:

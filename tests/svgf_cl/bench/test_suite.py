@@ -55,8 +55,8 @@ def test_a_filter_chooses_by_name() -> None:
 
 def test_a_frame_knows_its_cost_and_memory() -> None:
     run = Suite(re.compile(r"frame\.16x9|atrous\.16x9"), [SMALL], seconds=0.0).run(Steps().bar)
-    (frame,) = run.of(run.devices[0], stage="frame", clock="event")
-    (levels,) = run.of(run.devices[0], stage="atrous", clock="event")
+    (frame,) = run.of(run.devices[0], row="frame", clock="event")
+    (levels,) = run.of(run.devices[0], row="atrous", clock="event")
     assert frame.facts["planes"] > 0
     assert 0 < levels.facts["bound"] < frame.facts["bound"]
     assert 0 < levels.facts["flops"] < frame.facts["flops"]

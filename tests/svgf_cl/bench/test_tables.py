@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from svgf_cl.bench.tables import device_table, memory_table, milliseconds, stage_table
+from svgf_cl.bench.tables import benchmark_table, device_table, memory_table, milliseconds
 from tests.svgf_cl.bench.runs import whole_run
 
 
@@ -23,7 +23,7 @@ def test_speed_stands_beside_error() -> None:
 
 def test_event_and_host_time_share_a_row() -> None:
     run = whole_run()
-    rows = {row[0]: row[1:] for row in stage_table(run, run.devices[0]).rows}
+    rows = {row[0]: row[1:] for row in benchmark_table(run, run.devices[0]).rows}
     assert rows["svgf.temporal.1280x720"] == ("6.50 ±23%", "7.50 ±20%", "80", "arithmetic", "11", "217", "1085", "2")
     assert rows["svgf.enqueue.1280x720"] == ("-", "7.50 ±20%", "-", "-", "-", "-", "-", "2")
 
@@ -34,6 +34,6 @@ def test_memory_by_size() -> None:
 
 def test_every_row_fits_its_columns() -> None:
     run = whole_run()
-    for table in (device_table(run), stage_table(run, run.devices[0]), memory_table(run)):
+    for table in (device_table(run), benchmark_table(run, run.devices[0]), memory_table(run)):
         assert table.rows
         assert all(len(row) == len(table.columns) for row in table.rows)

@@ -17,7 +17,7 @@ def test_tune_stores_what_it_found(
     monkeypatch.setattr(tuning, "cache_folder", lambda: tmp_path)
     monkeypatch.setattr(tuner, "CHOICES", {"vector_width": (4, 8, 16), "row_alignment": (16, 256)})
     assert run("tune", "--size", "32x18") == 0
-    assert f"stored in {tmp_path / tuning.MEMORY}" in capsys.readouterr().out
+    assert f"stored in {tmp_path / tuning.STORE}" in capsys.readouterr().out
     assert run("devices") == 0
     assert "tuned: vectors of" in capsys.readouterr().out
     assert run("tune", "--reset") == 0

@@ -61,7 +61,7 @@ def interpreter(monkeypatch, tmp_path):
 def test_working_device(queue, memory):
     assert probe.run(queue.device) == ""
     assert probe.reason(queue.device) == ""
-    assert probe.key(queue.device) in (memory / probe.MEMORY).read_text()
+    assert probe.key(queue.device) in (memory / probe.STORE).read_text()
 
 
 def test_wrong_numbers(queue, monkeypatch):
@@ -147,7 +147,7 @@ def test_a_new_driver_is_probed_anew(queue):
 )
 def test_a_damaged_memory_is_written_anew(memory, answers, damaged):
     memory.mkdir()
-    (memory / probe.MEMORY).write_bytes(damaged)
+    (memory / probe.STORE).write_bytes(damaged)
     answers += ["", "never asked"]
     assert probe.reason(None) == probe.reason(None) == ""
 

@@ -38,7 +38,7 @@ class FakeDevice:
 def memory(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
     """Where tunings are stored; nothing is yet."""
     monkeypatch.setattr(tuning, "cache_folder", lambda: tmp_path / "cache")
-    return tmp_path / "cache" / tuning.MEMORY
+    return tmp_path / "cache" / tuning.STORE
 
 
 @pytest.mark.parametrize(
