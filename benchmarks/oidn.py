@@ -80,7 +80,7 @@ class OidnFilter:
             raise SvgfError(f"Open Image Denoise: {complaint}")
 
     def denoise(self, frame: Frame) -> npt.NDArray[np.float32]:
-        """OidnFilter one frame; return the result, (H, W, 3), in memory of its own."""
+        """Filter one frame; return the result, (H, W, 3), in memory of its own."""
         self.load(frame)
         self.execute()
         self.check()
