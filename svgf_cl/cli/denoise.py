@@ -39,13 +39,14 @@ def denoise(
     `svgf-cl render` writes: R G B, normal.X Y Z, depth.Z, motion.X Y [Z], and where there are any albedo.R G B, id,
     emission.R G B, direct.R G B, indirect.R G B. All frames count as one shot: each uses the ones before it.
 
-    After a break the same command goes on: as each picture hangs on all frames before it, those are filtered again, and
-    pictures that are there already and hold the very same are kept.
+    If it is interrupted, run the same command again. All frames are then filtered again, because each picture depends on
+    all frames before it, but pictures that are there already and are the same are kept.
 
     \b
     Examples:
       svgf-cl denoise out/box -o out/box-denoised
       svgf-cl denoise out/box -o out/box-denoised --set iterations=4 --set alpha_color=0.1 --png
+      svgf-cl denoise out/box -o out/box-eaw --filter eaw --set sigma_color=2
     """
     settings = parse_settings(filter_, set_)
     sources = find_frames(frames)
