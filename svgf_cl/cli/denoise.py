@@ -39,8 +39,8 @@ def denoise(
     `svgf-cl render` writes: R G B, normal.X Y Z, depth.Z, motion.X Y [Z], and where there are any albedo.R G B, id,
     emission.R G B, direct.R G B, indirect.R G B. All frames count as one shot: each uses the ones before it.
 
-    If it is interrupted, run the same command again. All frames are then filtered again, because each picture depends on
-    all frames before it, but pictures that are there already and are the same are kept.
+    If it is interrupted, run the same command again. All frames are then filtered again, because each picture depends
+    on all frames before it, but pictures that are there already and are the same are kept.
 
     \b
     Examples:
