@@ -161,7 +161,7 @@ class Plan:
         queue, found = self._at.queue, {}
         for name, values in entry.arrays.items():
             found[name] = allocate(queue, values.nbytes, values.nbytes)
-            cl.enqueue_copy(queue, found[name], np.ascontiguousarray(values), is_blocking=True)
+            cl.enqueue_copy(queue, found[name], values, is_blocking=True)
         return found
 
     def _launches(self) -> tuple[Launch, ...]:

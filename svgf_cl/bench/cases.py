@@ -16,7 +16,7 @@ import pyopencl as cl
 
 from svgf_cl.bench.cores import core_counts
 from svgf_cl.bench.cost import Cost, cost
-from svgf_cl.bench.rig import ENQUEUE, FRAME, FRAME_NUMPY, Row
+from svgf_cl.bench.rig import ENQUEUE, FRAME, FRAME_NUMPY, Row, levels_together
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.pipeline import Pass
 from svgf_cl.filters.signals import DIRECT, INDIRECT, Inputs
@@ -62,8 +62,7 @@ class Case:
         if self.variant:
             return [FRAME]
         paths = [entry.path for entry in self.passes]
-        together = dict.fromkeys(path[:1] for path in paths if len(path) > 1)
-        return [*paths, *together, FRAME, FRAME_NUMPY, ENQUEUE]
+        return [*paths, *levels_together(paths), FRAME, FRAME_NUMPY, ENQUEUE]
 
     def name(self, row: Row) -> str:
         """The benchmark's name."""

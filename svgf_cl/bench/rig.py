@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import pyopencl as cl
@@ -26,6 +26,15 @@ ENQUEUE: Row = ("enqueue",)
 
 # Clocks: the device's, from OpenCL events; the host's, from the call to the result.
 EVENT, HOST = "event", "host"
+
+
+def levels_together(paths: Iterable[Row]) -> dict[Row, list[Row]]:
+    """The paths that differ in their level alone, by the row that stands for all of them."""
+    found: dict[Row, list[Row]] = {}
+    for path in paths:
+        if len(path) > 1:
+            found.setdefault(path[:1], []).append(path)
+    return found
 
 
 def there_and_back(shape: Shape, signals: int) -> tuple[Frame, Frame]:
@@ -125,14 +134,11 @@ class Rig:
 
     def _add(self, clock: str, seconds: dict[str, float]) -> None:
         """Add one frame's passes, and those together that differ in their level alone."""
-        together: dict[Row, float] = defaultdict(float)
-        for label, value in seconds.items():
-            path = self._paths[label]
+        by_path = {self._paths[label]: value for label, value in seconds.items()}
+        for path, value in by_path.items():
             self.samples[path, clock].append(value)
-            if len(path) > 1:
-                together[path[:1]] += value
-        for row, value in together.items():
-            self.samples[row, clock].append(value)
+        for row, paths in levels_together(by_path).items():
+            self.samples[row, clock].append(sum(by_path[path] for path in paths))
 
     def _next(self, frames: Sequence[Frame]) -> Frame:
         self._count += 1

@@ -15,7 +15,7 @@ from svgf_cl.bench.ceilings import ALIGNED, OFFSET, CeilingBench, Ceilings
 from svgf_cl.bench.cores import confined
 from svgf_cl.bench.error import error_to_oracle
 from svgf_cl.bench.results import DeviceRecord, Result
-from svgf_cl.bench.rig import EVENT, FRAME, HOST, Rig, Row, there_and_back
+from svgf_cl.bench.rig import EVENT, FRAME, HOST, Rig, Row, levels_together, there_and_back
 from svgf_cl.bench.roofline import BINDS, Bound
 from svgf_cl.bench.startup import first_frames
 from svgf_cl.device import devices
@@ -145,9 +145,7 @@ def bound_facts(case: Case, ceilings: Ceilings) -> dict[Row, dict[str, Any]]:
     costs = case.costs()
     before = [*costs.values()][-1:] + [*costs.values()][:-1]  # the first pass comes after the last of another frame
     bounds = {path: Bound.of(costs[path], other, ceilings) for path, other in zip(costs, before, strict=True)}
-    together = dict.fromkeys(path[:1] for path in costs if len(path) > 1)
-    groups = {path: [path] for path in costs} | {FRAME: list(costs)}
-    groups |= {row: [path for path in costs if path[:1] == row] for row in together}
+    groups = {path: [path] for path in costs} | {FRAME: list(costs)} | levels_together(costs)
     found = {}
     for row, paths in groups.items():
         seconds = {term: sum((bounds[p].seconds for p in paths if bounds[p].binds == term), 0.0) for term in BINDS}

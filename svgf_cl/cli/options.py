@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
@@ -89,18 +89,13 @@ def describe(domain: Domain) -> str:
 
 def settings_help() -> str:
     """Describe every setting with its range and default, for the help text: first those that all filters have."""
-    shared = set.intersection(*(set(domains(kind)) for kind in FILTERS.values()))
-    parts = ["All filters have " + "; ".join(described(kind, name) for kind, name in first_with(shared))]
+    kinds = list(FILTERS.values())
+    shared = [name for name in domains(kinds[0]) if all(name in domains(kind) for kind in kinds)]
+    parts = ["All filters have " + "; ".join(described(kinds[0], name) for name in shared)]
     for filter_, kind in FILTERS.items():
         own = [described(kind, name) for name in domains(kind) if name not in shared]
         parts.append(f"{filter_} also has " + "; ".join(own))
     return f"Change a setting of the filter; may be repeated. {'. '.join(parts)}."
-
-
-def first_with(names: Collection[str]) -> list[tuple[type[Filter], str]]:
-    """These settings in the order of the first filter, each with that filter."""
-    kind = next(iter(FILTERS.values()))
-    return [(kind, name) for name in domains(kind) if name in names]
 
 
 def described(kind: type[Filter], name: str) -> str:

@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from functools import cached_property
 
 import numpy as np
 
@@ -234,18 +235,18 @@ class Pass:
     level: int | None = None
     row_step: int = 1
 
+    def __post_init__(self) -> None:
+        if len(set(self.arguments)) < len(self.arguments):
+            raise ValueError(f"{self.label}: expected arguments of different names, got {', '.join(self.arguments)}")
+        kept = {name: np.array(values, order="C") for name, values in self.arrays.items()}  # apart from the owner's
+        for values in kept.values():
+            values.flags.writeable = False
+        object.__setattr__(self, "arrays", kept)
+
     @property
     def path(self) -> tuple[str, ...]:
         """The kernel and, where there are several like it, the level."""
         return (self.kernel,) if self.level is None else (self.kernel, str(self.level))
-
-    def __post_init__(self) -> None:
-        if len(set(self.arguments)) < len(self.arguments):
-            raise ValueError(f"{self.label}: expected arguments of different names, got {', '.join(self.arguments)}")
-        kept = {name: np.array(values) for name, values in self.arrays.items()}  # apart from the owner's
-        for values in kept.values():
-            values.flags.writeable = False
-        object.__setattr__(self, "arrays", kept)
 
     @property
     def label(self) -> str:
@@ -281,7 +282,7 @@ class Pipeline:
             if len(set(names)) < len(names):
                 raise ValueError(f"expected passes and stages of different names, got {', '.join(names)}")
 
-    @property
+    @cached_property
     def resources(self) -> tuple[Resource, ...]:
         """All that the passes write, each once, in the order of the first write."""
         written = (each.of.resource for entry in self.passes for each in entry.writes if isinstance(each.of, Buffer))
@@ -292,13 +293,13 @@ class Pipeline:
         """The resources that the next frame reads."""
         return tuple(resource for resource in self.resources if resource.life is not Life.SCRATCH)
 
-    @property
+    @cached_property
     def fields(self) -> tuple[str, ...]:
         """The user's arrays that are read."""
         read = (each.of for entry in self.passes for each in entry.reads if isinstance(each.of, str))
         return tuple(dict.fromkeys(read))
 
-    @property
+    @cached_property
     def defines(self) -> dict[str, int]:
         """Every macro of the kernels that the pipeline decides."""
         found = dict(self.macros)
@@ -333,16 +334,13 @@ class Pipeline:
         )
 
     def _without_scalars(self) -> Pipeline:
-        blank = tuple(replace(entry, scalars=dict.fromkeys(entry.scalars, 0)) for entry in self.passes)
+        blank = tuple(replace(entry, scalars=dict.fromkeys(entry.scalars, 0), arrays={}) for entry in self.passes)
         return replace(self, passes=blank)
 
 
 def same_arrays(a: Mapping[str, np.ndarray], b: Mapping[str, np.ndarray]) -> bool:
     """Whether arrays are the same by name, type, shape and every bit."""
     return list(a) == list(b) and all(
-        a[name] is b[name]
-        or (
-            a[name].dtype == b[name].dtype and a[name].shape == b[name].shape and a[name].tobytes() == b[name].tobytes()
-        )
+        a[name].dtype == b[name].dtype and a[name].shape == b[name].shape and a[name].tobytes() == b[name].tobytes()
         for name in a
     )
