@@ -9,7 +9,8 @@ from PIL import Image
 
 from svgf_cl.io.atomic import written_whole
 from svgf_cl.io.display import to_bytes
-from svgf_cl.io.frames import frame_path, read_picture
+from svgf_cl.io.frames import frame_path
+from svgf_cl.io.pictures import read_picture
 
 DEMO = Path("out/demo")
 TARGET = Path("docs/demo.png")

@@ -14,7 +14,8 @@ from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Frame
 from svgf_cl.io.atomic import make_folder
 from svgf_cl.io.display import write_image
-from svgf_cl.io.frames import find_frames, read_sequence
+from svgf_cl.io.frames import find_frames
+from svgf_cl.io.shot import read_sequence
 
 
 def check(

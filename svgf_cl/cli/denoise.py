@@ -19,7 +19,12 @@ from svgf_cl.filters import Settings
 from svgf_cl.filters.filter import Filter
 from svgf_cl.io.atomic import make_folder
 from svgf_cl.io.display import to_bytes, write_image
-from svgf_cl.io.frames import check_leftovers, find_frames, is_picture, read_sequence, write_picture
+from svgf_cl.io.exr import write_image as write_exr
+from svgf_cl.io.frames import check_leftovers, find_frames
+from svgf_cl.io.image import Image
+from svgf_cl.io.pictures import holds, picture_file
+from svgf_cl.io.shot import read_shot, shared_window
+from svgf_cl.io.window import placed
 
 
 def denoise(
@@ -32,10 +37,12 @@ def denoise(
     set_: SettingTexts = [],  # noqa: B006  # never changed; typer wants the default spelled here
     png: Annotated[bool, typer.Option("--png", help="Also write every picture tone-mapped as PNG.")] = False,
     exposure: Exposure = 0.0,
+    plain: Annotated[bool, typer.Option("--plain", help="Write R G B alone, no other channel.")] = False,
 ) -> None:
     """Denoise a sequence of EXR frames.
 
-    Writes one EXR (R, G, B; linear HDR) a frame under the frame's own name. The channels read are those that
+    Writes one EXR a frame under the frame's own name. R, G and B are denoised (linear HDR, 32-bit floats); all else in
+    the frame's file passes through: other channels, windows, attributes. The channels read are those that
     `svgf-cl render` writes: R G B, normal.X Y Z, depth.Z, motion.X Y [Z], and where there are any albedo.R G B, id,
     emission.R G B, direct.R G B, indirect.R G B. All frames count as one shot: each uses the ones before it.
 
@@ -54,13 +61,16 @@ def denoise(
     shown = [target.with_suffix(".png") for target in targets if png]
     check_leftovers(output, [*targets, *shown])
     profiles, kept = [], 0
-    for target, picture, profile in tracked(denoised(sources, targets, settings), len(sources), "denoising"):
-        if is_picture(target, picture):
+    results = tracked(denoised(sources, settings), len(sources), "denoising")
+    for target, (source, picture, profile) in zip(targets, results, strict=True):
+        image = picture_file(picture, source, plain=plain)
+        if holds(target, image):
             kept += 1
         else:
-            write_picture(target, picture)
+            write_exr(target, image)
         if png:
-            write_image(target.with_suffix(".png"), to_bytes(picture, exposure))
+            shown_part = placed(picture, source.windows.data, source.windows.display, 0.0)
+            write_image(target.with_suffix(".png"), to_bytes(shown_part, exposure))
         profiles.append(profile)
     show_times(profiles)
     print(f"{len(profiles)} frames in {output}{kept_of(kept)}")
@@ -79,10 +89,10 @@ def target_paths(sources: Sequence[Path], folder: Path) -> list[Path]:
 
 
 def denoised(
-    sources: Sequence[Path], targets: Sequence[Path], settings: Filter
-) -> Iterator[tuple[Path, npt.NDArray[np.float32], dict[str, float]]]:
-    """Read and denoise one frame after the other: where each goes, its picture, and milliseconds per pass."""
-    denoiser = None
-    for target, frame in zip(targets, read_sequence(sources), strict=True):
+    sources: Sequence[Path], settings: Filter
+) -> Iterator[tuple[Image, npt.NDArray[np.float32], dict[str, float]]]:
+    """Read and denoise one frame after the other: its file, its picture, and milliseconds per pass."""
+    window, denoiser = shared_window(sources), None
+    for image, frame in read_shot(sources, window):
         denoiser = denoiser or Denoiser(frame.shape, settings=settings)
-        yield target, denoiser.denoise(frame), denoiser.profile()
+        yield image, placed(denoiser.denoise(frame), window, image.windows.data, 0.0), denoiser.profile()

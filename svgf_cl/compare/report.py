@@ -9,7 +9,8 @@ from svgf_cl.compare.metrics import Metrics, mean, measure
 from svgf_cl.errors import FileError
 from svgf_cl.frame import extent
 from svgf_cl.io.atomic import require
-from svgf_cl.io.frames import find_numbered, frame_number, read_picture
+from svgf_cl.io.frames import find_numbered, frame_number
+from svgf_cl.io.pictures import read_picture
 
 COLUMNS = ("frame", "PSNR dB", "SSIM", "relMSE")
 

@@ -7,7 +7,7 @@ are called ``frame.0000.exr``, references ``reference.0000.exr``; the number is 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 
@@ -15,9 +15,14 @@ import numpy as np
 import numpy.typing as npt
 
 from svgf_cl.errors import FileError, FrameError
-from svgf_cl.frame import REQUIRED, Frame, extent
+from svgf_cl.frame import REQUIRED, Frame
 from svgf_cl.io.atomic import entries, require
-from svgf_cl.io.exr import Plane, read_attribute, read_channels, write_channels
+from svgf_cl.io.exr import (
+    read_attribute,
+    read_channels,
+    write_channels,
+)
+from svgf_cl.io.image import Plane
 
 # Channels of each field, in the order of its components; a third motion component may be missing.
 CHANNEL_NAMES: dict[str, tuple[str, ...]] = {
@@ -32,7 +37,7 @@ CHANNEL_NAMES: dict[str, tuple[str, ...]] = {
     "roughness": ("roughness",),
     "hit_distance": ("hit_distance.diffuse", "hit_distance.specular"),
 }
-MAX_ID = 2**24
+MAX_ID = 2**24  # of ids in a channel of floats
 MADE_FROM = "svgf_cl:made_from"  # the attribute that tells what a frame was made from
 NUMBERED = re.compile(r"(frame|reference)\.\d+\.exr|(frame|still)\.\d+\.png")
 
@@ -119,14 +124,6 @@ def kept_frame(path: Path, made_from: str) -> Frame | None:
         return None
 
 
-def is_picture(path: Path, picture: Plane) -> bool:
-    """Whether the file at `path` holds this (H, W, 3) picture, bit by bit."""
-    try:
-        return read_picture(path).tobytes() == picture.tobytes()
-    except FileError:
-        return False
-
-
 def channels_of(path: Path, frame: Frame) -> dict[str, Plane]:
     """Take a frame of numpy arrays apart into the channels of file `path`; errors as of `write_frame`."""
     frame.check(frame.shape)
@@ -140,19 +137,23 @@ def channels_of(path: Path, frame: Frame) -> dict[str, Plane]:
 
 
 def read_frame(path: Path) -> Frame:
-    """Read a frame that `write_frame`, or a renderer with the same channel names, wrote.
+    """Read a frame that `write_frame`, or a renderer with the same channel names, wrote: all its pixels.
 
     Raises
     ------
     FileError
         Where the file is missing or not an EXR file, or where a field is absent, incomplete or of a wrong value.
     """
-    planes = read_channels(path)
+    return frame_of(path, read_channels(path))
+
+
+def frame_of(path: Path, planes: Mapping[str, Plane]) -> Frame:
+    """Put a frame together from the channels of file `path`; errors as of `read_frame`."""
     values = {field: value for field in CHANNEL_NAMES if (value := field_of(path, planes, field)) is not None}
     for field in REQUIRED:
         if field not in values:
             raise absent(path, CHANNEL_NAMES[field], planes)
-    frame = Frame(**{**values, "id": whole_numbers(path, values["id"]) if "id" in values else None})
+    frame = Frame(**values)
     try:
         frame.check_presence()
     except FrameError as error:
@@ -160,57 +161,7 @@ def read_frame(path: Path) -> Frame:
     return frame
 
 
-def read_sequence(paths: Sequence[Path]) -> Iterator[Frame]:
-    """Read one frame after the other; all must be of one size, with the same fields, and something finite in each.
-
-    Raises
-    ------
-    FileError
-        As `read_frame`, and where a frame differs in size or fields from the first or a field has no usable value.
-    """
-    size, fields = None, None
-    for path in paths:
-        frame = read_frame(path)
-        size, fields = size or frame.shape, fields or fields_of(frame)
-        if frame.shape != size:
-            raise FileError(f"{path}: expected {extent(size)} pixels as in {paths[0]}, got {extent(frame.shape)}")
-        changes = [f"without {name}" for name in sorted(fields - fields_of(frame))]
-        changes += [f"with {name}" for name in sorted(fields_of(frame) - fields)]
-        if changes:
-            raise FileError(f"{path}: expected the fields of {paths[0]}, got a frame {', '.join(changes)}")
-        check_usable(path, frame)
-        yield frame
-
-
-def fields_of(frame: Frame) -> set[str]:
-    """Name the fields that are there, and motion.Z, which is optional too."""
-    return {*frame.present(), *(["motion.Z"] if frame.motion.shape[-1] == 3 else [])}
-
-
-def check_usable(path: Path, frame: Frame) -> None:
-    """Raise `FileError` where a whole field is NaN or infinite (depth may be infinite: an empty sky)."""
-    for field, value in frame.present().items():
-        usable = ~np.isnan(value) if field == "depth" else np.isfinite(value)
-        if not usable.any():
-            raise FileError(f"{path}: expected finite values in {field}, got none in the whole frame")
-
-
-def write_picture(path: Path, picture: npt.ArrayLike) -> None:
-    """Write a (H, W, 3) linear picture as a plain ``R G B`` EXR file, whole or not at all."""
-    components = np.moveaxis(np.asarray(picture, np.float32), -1, 0)
-    write_channels(path, dict(zip(CHANNEL_NAMES["color"], components, strict=True)))
-
-
-def read_picture(path: Path) -> Plane:
-    """Read the ``R G B`` of an EXR file, whatever else it holds, as (H, W, 3) float32; `FileError` without them."""
-    planes = read_channels(path)
-    color = field_of(path, planes, "color")
-    if color is None:
-        raise absent(path, CHANNEL_NAMES["color"], planes)
-    return color
-
-
-def field_of(path: Path, planes: Mapping[str, Plane], field: str) -> Plane | None:
+def field_of(path: Path, planes: Mapping[str, Plane], field: str) -> npt.NDArray[np.generic] | None:
     """Put `field` together from its channels; None where none is there, an error where only some are."""
     names = CHANNEL_NAMES[field]
     found = [planes[name] for name in names if name in planes]
@@ -219,11 +170,16 @@ def field_of(path: Path, planes: Mapping[str, Plane], field: str) -> Plane | Non
     needed = names[:2] if field == "motion" else names
     if not planes.keys() >= set(needed):
         raise absent(path, needed, planes)
-    return found[0] if len(names) == 1 else np.stack(found, axis=-1)
+    if field == "id":
+        return whole_numbers(path, found[0])
+    values = [np.asarray(plane, np.float32) for plane in found]
+    return values[0] if len(names) == 1 else np.stack(values, axis=-1)
 
 
 def whole_numbers(path: Path, plane: Plane) -> npt.NDArray[np.uint32]:
-    """Return ids as integers; `FileError` unless they are whole numbers that float32 holds exactly."""
+    """Return ids as integers; `FileError` unless they are, or are whole numbers that float32 holds exactly."""
+    if plane.dtype == np.uint32:
+        return plane.astype(np.uint32, copy=False)
     fits = (plane >= 0) & (plane <= MAX_ID) & (plane == np.floor(plane))
     if not fits.all():
         raise FileError(f"{path}: expected whole numbers in 0..{MAX_ID} in channel id, got {plane[~fits][0]}")

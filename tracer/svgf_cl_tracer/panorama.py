@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import warnings
 from os import PathLike
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from svgf_cl.errors import FileError
-from svgf_cl.io.exr import read_pixels
+from svgf_cl.io.exr import read_image
+from svgf_cl.io.layers import picture_channels
+from svgf_cl.io.window import placed
 
 from .errors import SceneError
+from .primaries import to_rec709
 from .sky import Environment
-from .vectors import Float64
+from .vectors import Float32, Float64
 
 FORMATS = ("hdr", "openexr")  # linear ones
 
@@ -23,6 +28,10 @@ MAX_PIXELS = 2**25
 def load_environment(path: str | PathLike[str], to_world: Float64 | None = None) -> Environment:
     """Read an equirectangular image of all directions, .hdr or .exr.
 
+    The picture is found by the names of channels, as `picture_channels` says, and lies on the display window; what the
+    file lacks of that is black. Other primaries than those of Rec. 709 are converted. What is no radiance is mended,
+    with a warning.
+
     Parameters
     ----------
     path : path
@@ -32,18 +41,53 @@ def load_environment(path: str | PathLike[str], to_world: Float64 | None = None)
     Raises
     ------
     SceneError
-        The file is missing, damaged, of another format or too large, or holds what is no radiance.
+        The file is missing, damaged, of another format or too large, or has no picture, or nothing finite in it.
     """
     path = Path(path)
     try:
-        names, pixels = read_pixels(path, FORMATS)
-        height, width = pixels.shape[:2]
-        if len(names) < 3 or width * height > MAX_PIXELS:
-            raise SceneError(
-                f"expected three channels and at most {MAX_PIXELS} pixels, got {len(names)} and {width} x {height}"
-            )
-        return Environment(np.ascontiguousarray(pixels[..., :3]), np.eye(3) if to_world is None else to_world)
+        image = read_image(path, FORMATS)
+        windows, planes = image.windows, image.planes
+        if windows.display.area > MAX_PIXELS:
+            raise SceneError(f"expected at most {MAX_PIXELS} pixels, got {windows.display}")
+        names = picture_channels(planes)
     except FileError as error:
         raise SceneError(str(error)) from error
+    except ValueError as error:
+        raise SceneError(f"{path}: {error}") from error
+    found = np.stack([np.asarray(planes[name], np.float32) for name in names], axis=-1)
+    picture = placed(found, windows.data, windows.display, 0.0)
+    try:
+        finite, repairs = without_infinities(picture)
+        radiance, clipped = without_negatives(to_rec709(finite, image.chromaticities))
+        environment = Environment(radiance, np.eye(3) if to_world is None else to_world)
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from error
+    if repairs + clipped and not radiance.any():
+        raise SceneError(f"{path}: expected radiance, got none: {'; '.join(repairs + clipped)}")
+    if repairs + clipped:
+        warnings.warn(f"{path}: mended in this sky: {'; '.join(repairs + clipped)}", stacklevel=2)
+    return environment
+
+
+def without_infinities(picture: Float32) -> tuple[Float32, list[str]]:
+    """Make NaN black and infinity the greatest finite value of a (h, w, 3) picture; say in how many pixels."""
+    finite = np.isfinite(picture)
+    if not finite.any():
+        raise SceneError("sky: expected finite radiance, got none in the whole image")
+    nan, infinite = np.isnan(picture), np.isposinf(picture)
+    greatest = float(picture[finite].max())
+    repairs = said(nan, "not a number, now 0") + said(
+        infinite, f"infinite, now {greatest:g}, the greatest finite value"
+    )
+    return np.where(nan, 0.0, np.where(infinite, greatest, picture)).astype(np.float32), repairs
+
+
+def without_negatives(picture: Float32) -> tuple[Float32, list[str]]:
+    """Make the negative values of a (h, w, 3) picture 0; say in how many pixels."""
+    return np.maximum(picture, np.float32(0.0)), said(picture < 0.0, "negative, now 0")
+
+
+def said(values: npt.NDArray[np.bool_], what: str) -> list[str]:
+    """Say how many pixels have such values, (h, w, 3), if any."""
+    count = int(values.any(axis=-1).sum())
+    return [f"{count} {'pixel' if count == 1 else 'pixels'} {what}"] if count else []

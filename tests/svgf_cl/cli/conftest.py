@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl.io.frames import frame_path, write_frame, write_picture
+from svgf_cl.io.frames import frame_path, write_frame
+from svgf_cl.io.pictures import write_picture
 from svgf_cl.io.synthetic import room_frames
 
 

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl.io.frames import read_frame, read_picture, write_frame, write_picture
+from svgf_cl.io.frames import read_frame, write_frame
+from svgf_cl.io.pictures import read_picture, write_picture
 from tests.command_line import NAMES, run
 
 

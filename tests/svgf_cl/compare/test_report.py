@@ -11,7 +11,8 @@ import pytest
 from svgf_cl.compare.metrics import Metrics
 from svgf_cl.compare.report import COLUMNS, measured, misses, pairs, table_rows
 from svgf_cl.errors import FileError
-from svgf_cl.io.frames import frame_path, write_picture
+from svgf_cl.io.frames import frame_path
+from svgf_cl.io.pictures import write_picture
 
 GOOD, BAD = Metrics(40.0, 0.99, 0.001), Metrics(20.0, 0.5, 0.1)
 

@@ -23,14 +23,12 @@ from svgf_cl.io.frames import (
     find_numbered,
     frame_number,
     frame_path,
-    is_picture,
     kept_frame,
     read_frame,
-    read_picture,
-    read_sequence,
     write_frame,
-    write_picture,
 )
+from svgf_cl.io.pictures import is_picture, read_picture, write_picture
+from svgf_cl.io.shot import read_sequence
 from tests.disk import unprivileged
 
 

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from svgf_cl.io.exr import read_channels
-from svgf_cl.io.frames import CHANNEL_NAMES, read_frame, read_picture
+from svgf_cl.io.frames import CHANNEL_NAMES, read_frame
+from svgf_cl.io.pictures import read_picture
 from svgf_cl_tracer import BUILTIN
 from tests.command_line import NAMES, run
 

@@ -9,7 +9,7 @@ import pytest
 
 import svgf_cl_tracer
 from svgf_cl.errors import SvgfError
-from svgf_cl.io.frames import write_picture
+from svgf_cl.io.pictures import write_picture
 from svgf_cl_tracer.cli.scenes import open_scene, read_sky
 
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"

@@ -1,0 +1,74 @@
+"""Pictures as OpenEXR files: plain ones, and denoised ones that keep what else the file of their frame holds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from svgf_cl.errors import FileError
+from svgf_cl.io.exr import read_image, write_image
+from svgf_cl.io.frames import MADE_FROM
+from svgf_cl.io.image import Image, new_image
+from svgf_cl.io.layers import RGB, picture_channels
+from svgf_cl.io.window import placed
+
+Picture = npt.NDArray[np.float32]
+
+
+def picture_file(picture: Picture, source: Image | None = None, *, plain: bool = False) -> Image:
+    """Make the file of a picture.
+
+    Parameters
+    ----------
+    picture : (H, W, 3) float32
+        Linear radiance.
+    source : Image, optional
+        The file of the frame it was made from, of the same data window: what it says, and its other channels, go along.
+    plain : bool
+        No channels but ``R G B``.
+    """
+    planes = dict(zip(RGB, np.moveaxis(picture, -1, 0), strict=True))
+    if source is None:
+        return new_image(planes, {})
+    kept = source.without(MADE_FROM)
+    return kept.with_planes_alone(planes) if plain else kept.with_planes(planes)
+
+
+def write_picture(path: Path, picture: npt.ArrayLike) -> None:
+    """Write a (H, W, 3) linear picture as a plain ``R G B`` EXR file, whole or not at all."""
+    write_image(path, picture_file(np.asarray(picture, np.float32)))
+
+
+def is_picture(path: Path, picture: Picture) -> bool:
+    """Whether the file at `path` holds this (H, W, 3) picture and nothing else, bit by bit."""
+    return holds(path, picture_file(picture))
+
+
+def holds(path: Path, image: Image) -> bool:
+    """Whether the file at `path` holds this image, bit by bit."""
+    try:
+        return read_image(path).same_as(image)
+    except FileError:
+        return False
+
+
+def read_picture(path: Path) -> Picture:
+    """Read the picture of an EXR file, whatever else it holds, as (H, W, 3) float32 on its display window.
+
+    Which channels these are says `picture_channels`. Pixels of the display window that the file lacks are black.
+
+    Raises
+    ------
+    FileError
+        As of `read_image`, and where there is no picture or more than one.
+    """
+    image = read_image(path)
+    planes = image.planes
+    try:
+        names = picture_channels(planes)
+    except ValueError as error:
+        raise FileError(f"{path}: {error}") from error
+    picture = np.stack([np.asarray(planes[name], np.float32) for name in names], axis=-1)
+    return placed(picture, image.windows.data, image.windows.display, 0.0)
