@@ -77,10 +77,12 @@ def _write_pixels(path: Path, target: Path, image: Image) -> None:
 
 def _spec(windows: Windows, part: Part) -> oiio.ImageSpec:
     """What OpenImageIO must know to write the pixels of a part."""
-    spec = oiio.ImageSpec(windows.data.width, windows.data.height, len(part.planes), "float")
+    types = ["half" if channel in part.halves else "float" for channel in part.planes]
+    spec = oiio.ImageSpec(windows.data.width, windows.data.height, len(part.planes), types[0])
     spec.x, spec.y, _, _ = windows.data
     spec.channelnames = tuple(_stored(part, channel) for channel in part.planes)
-    spec.channelformats = tuple("half" if channel in part.halves else "float" for channel in part.planes)
+    if len(set(types)) > 1:
+        spec.channelformats = tuple(types)
     spec.attribute("compression", "zip")
     spec.attribute("DateTime", "")  # or there would be one
     return spec
@@ -142,6 +144,8 @@ def read_image(path: Path, formats: Collection[str] = ("openexr",)) -> Image:
         try:
             is_exr = source.format_name() == "openexr"
             attributes: list[Attributes] = read_attributes(path) if is_exr else [{}]
+            if len(attributes) != len(specs):
+                raise ValueError(f"expected a whole image, got a damaged one ({len(attributes)} parts or {len(specs)})")
             names = unique_names([(spec.get("oiio:subimagename", ""), spec.channelnames) for spec in specs])
         except OSError as error:
             raise unreadable(path, error) from error
@@ -230,7 +234,7 @@ def _check_claims(path: Path, specs: Sequence[oiio.ImageSpec]) -> None:
 
 def _check_kind(path: Path, specs: Sequence[oiio.ImageSpec]) -> None:
     """Raise `FileError` where a file is of a kind that is not read."""
-    views = {view for spec in specs for view in (spec.get("view"), *(spec.get("multiView") or ())) if view}
+    views = {view for spec in specs for view in _views(spec)}
     if any(spec.deep for spec in specs):
         raise FileError(f"{path}: expected flat pixels, got deep ones; flatten the image first")
     if len(views) > 1:
@@ -241,6 +245,13 @@ def _check_kind(path: Path, specs: Sequence[oiio.ImageSpec]) -> None:
                 f"{path}: expected all parts to have the windows of the first, {_described_windows(specs[0])}, got"
                 f" {_described_windows(spec)} in part {spec.get('oiio:subimagename')}"
             )
+
+
+def _views(spec: oiio.ImageSpec) -> list[str]:
+    """The views that a part says it has, such as left and right."""
+    listed = spec.get("multiView")
+    named = [spec.get("view"), *(listed if isinstance(listed, tuple) else ())]
+    return [view for view in named if view and isinstance(view, str)]
 
 
 def _described_windows(spec: oiio.ImageSpec) -> str:

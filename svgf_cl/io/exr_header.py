@@ -47,10 +47,12 @@ def read_attributes(path: Path) -> list[Attributes]:
 
 
 def encoded(value: int | float | str) -> Attribute:
-    """Make an attribute of a number or a text."""
-    if isinstance(value, str):
-        return "string", value.encode()
-    return ("int", struct.pack("<i", value)) if isinstance(value, int) else ("float", struct.pack("<f", value))
+    """Make an attribute of a number or a text; of a whole number that takes more than 32 bits, a text."""
+    if isinstance(value, float):
+        return "float", struct.pack("<f", value)
+    if isinstance(value, int) and -(2**31) <= value < 2**31:
+        return "int", struct.pack("<i", value)
+    return "string", str(value).encode()
 
 
 def copy_with_header(

@@ -8,6 +8,7 @@ from collections.abc import Collection, Sequence
 from svgf_cl.frame import CHANNELS
 
 RGB = ("R", "G", "B")
+TOGETHER = (("R", "G", "B", "A"), ("X", "Y", "Z"))
 # How else renderers call the components of a layer.
 COMPONENTS = {"r": 0, "red": 0, "g": 1, "green": 1, "b": 2, "blue": 2}
 # How renderers call the layer that is the picture, whatever comes before in names such as ViewLayer.Combined.
@@ -36,8 +37,7 @@ def picture_channels(names: Collection[str]) -> tuple[str, ...]:
         if len(found) == 1:
             return layers[found[0]]
     raise ValueError(
-        f"expected channels R G B, or one layer that is named like a picture ({', '.join(PICTURES)}) or is the only one"
-        f" with R G B; found {' '.join(names)}"
+        f"expected channels R G B, or one layer of them, or one named {' or '.join(PICTURES)}; found {' '.join(names)}"
     )
 
 
@@ -59,7 +59,8 @@ def is_picture_name(name: str) -> bool:
 def unique_names(parts: Sequence[tuple[str, Collection[str]]]) -> list[dict[str, str]]:
     """Name the channels of a file so that no two are called the same.
 
-    A name that several parts have gets the part's name before it, as a layer, save in the part that is the picture.
+    A name that several parts have gets the part's name before it, as a layer; so do its companions in ``R G B A`` or
+    ``X Y Z``. Those of the part that is the picture stay as they are.
 
     Parameters
     ----------
@@ -81,17 +82,23 @@ def unique_names(parts: Sequence[tuple[str, Collection[str]]]) -> list[dict[str,
     main = pictures if len(pictures) < 2 else [part for part in pictures if is_picture_name(part)]
     if pictures and len(main) != 1:
         raise ValueError(
-            f"expected R G B in one part, or one of its parts named like a picture ({', '.join(PICTURES)}), found R G B"
-            f" in the parts {', '.join(pictures)}"
+            f"expected R G B in one part, or one of the parts with them named {' or '.join(PICTURES)}; found them in"
+            f" {', '.join(pictures)}"
         )
+    shared = {name for name, count in counts.items() if count > 1}
     renamed = [
-        {name: name if counts[name] == 1 or part in main else f"{part}.{name}" for name in names}
+        {name: name if part in main or not _moves(name, shared & {*names}) else f"{part}.{name}" for name in names}
         for part, names in parts
     ]
     for name, count in Counter(name for names in renamed for name in names.values()).items():
         if count > 1:
             raise ValueError(f"expected channels of different names, found two called {name}")
     return renamed
+
+
+def _moves(name: str, shared: Collection[str]) -> bool:
+    """Whether a channel is, or is one with, a channel of its part that is `shared`."""
+    return name in shared or any(name in together and {*together} & {*shared} for together in TOGETHER)
 
 
 def _last(layer: str) -> str:

@@ -51,11 +51,11 @@ def shared_window(paths: Sequence[Path]) -> Window:
     windows = {path: read_windows(path) for path in paths}
     first = windows[paths[0]]
     for path, own in windows.items():
-        if own.display != first.display:
-            raise FileError(f"{path}: expected the display window {first.display} of {paths[0]}, got {own.display}")
-        if own.pixel_aspect != first.pixel_aspect:
-            ratios = first.pixel_aspect, own.pixel_aspect
-            raise FileError(f"{path}: expected the pixel aspect ratio {ratios[0]:g} of {paths[0]}, got {ratios[1]:g}")
+        if (own.display, own.pixel_aspect) != (first.display, first.pixel_aspect):
+            raise FileError(
+                f"{path}: expected the display window {first.display} and pixel aspect ratio {first.pixel_aspect:g} of"
+                f" {paths[0]}, got {own.display} and {own.pixel_aspect:g}; denoise one shot at a time"
+            )
     window = union(own.data for own in windows.values())
     if window.area > max(MAX_DISPLAY, *(own.data.area for own in windows.values())):
         far = max(windows, key=lambda path: union((first.data, windows[path].data)).area)

@@ -76,9 +76,7 @@ def without_infinities(picture: Float32) -> tuple[Float32, list[str]]:
         raise SceneError("sky: expected finite radiance, got none in the whole image")
     nan, infinite = np.isnan(picture), np.isposinf(picture)
     greatest = float(picture[finite].max())
-    repairs = said(nan, "not a number, now 0") + said(
-        infinite, f"infinite, now {greatest:g}, the greatest finite value"
-    )
+    repairs = said(nan, "NaN, now 0") + said(infinite, f"infinite, now {greatest:g} as the brightest finite one")
     return np.where(nan, 0.0, np.where(infinite, greatest, picture)).astype(np.float32), repairs
 
 

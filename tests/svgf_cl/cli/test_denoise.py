@@ -8,9 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl.io.exr import read_channels, write_channels
+from svgf_cl.io.exr import read_channels, read_image, write_channels
 from svgf_cl.io.frames import read_frame, write_frame
-from tests.command_line import NAMES, run
+from svgf_cl.io.pictures import read_picture
+from svgf_cl.io.window import Window
+from tests.command_line import NAMES, contents, run
+from tests.exr_files import exr_bytes
+from tests.frames import wall
 
 
 def test_settings_reach_the_filter(rendered: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -45,7 +49,7 @@ def test_sizes_that_differ(frames: Path, refused) -> None:
     frame = read_frame(frames / NAMES[1])
     cropped = {name: np.ascontiguousarray(value[:-2]) for name, value in frame.present().items()}
     write_frame(frames / NAMES[1], replace(frame, **cropped))
-    refused("0001.exr: expected 32x18 pixels", "denoise", frames, "-o", frames / "out")
+    refused("0001.exr: expected the display window 32x18 at 0,0", "denoise", frames, "-o", frames / "out")
 
 
 def test_an_absent_field(frames: Path, refused) -> None:
@@ -99,3 +103,56 @@ def test_another_filter(rendered: Path, tmp_path: Path) -> None:
 def test_a_filter_that_is_none(rendered: Path, tmp_path: Path, refused) -> None:
     refused("--filter: expected svgf or eaw, got 'nlm'", "denoise", rendered, "-o", tmp_path, "--filter", "nlm")
     refused("a name out of", "denoise", rendered, "-o", tmp_path, "--filter", "eaw", "--set", "sigma_luminance=1")
+
+
+def test_all_but_the_picture_passes_through(rendered: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("denoise", rendered, "-o", tmp_path / "out") == 0
+    assert run("denoise", rendered, "-o", tmp_path / "plain", "--plain") == 0
+    for name in NAMES:
+        noisy, clean, plain = (read_image(folder / name) for folder in (rendered, tmp_path / "out", tmp_path / "plain"))
+        assert clean.planes.keys() == noisy.planes.keys() > plain.planes.keys() == {"R", "G", "B"}
+        changed = {key for key, plane in noisy.planes.items() if plane.tobytes() != clean.planes[key].tobytes()}
+        assert changed == plain.planes.keys()
+        assert all(plane.tobytes() == clean.planes[key].tobytes() for key, plane in plain.planes.items())
+    capsys.readouterr()
+    assert run("denoise", rendered, "-o", tmp_path / "out", "--plain") == 0
+    assert "kept" not in capsys.readouterr().out
+    assert contents(tmp_path / "out") == contents(tmp_path / "plain")
+
+
+def test_another_attribute_or_channel_is_written_though_the_picture_is_the_same(
+    frames: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run("denoise", frames, "-o", tmp_path / "out") == 0
+    planes = read_channels(frames / NAMES[0])
+    write_channels(frames / NAMES[0], planes, {"owner": "me"})
+    write_channels(frames / NAMES[1], {**read_channels(frames / NAMES[1]), "A": np.ones_like(planes["R"])})
+    capsys.readouterr()
+    assert run("denoise", frames, "-o", tmp_path / "out") == 0
+    assert "1 of them kept" in capsys.readouterr().out
+    assert read_image(tmp_path / "out" / NAMES[0]).parts[0].attributes["owner"] == ("string", b"me")
+    assert "A" in read_channels(tmp_path / "out" / NAMES[1])
+
+
+def test_a_window_that_moves_over_a_still_picture_changes_nothing(tmp_path: Path) -> None:
+    """Far from what no window had, a picture is what whole frames give; it lies where its frame did."""
+    noise, display = np.random.default_rng(3).exponential(1.0, (4, 16, 40, 3)).astype(np.float32), Window(0, 0, 40, 16)
+    (tmp_path / "whole").mkdir()
+    (tmp_path / "moving").mkdir()
+    for name, color, x in zip((*NAMES, "frame.0003.exr"), noise, (0, 3, 8, 2), strict=True):
+        write_frame(tmp_path / "whole" / name, wall((16, 40), color=color))
+        cut = {
+            key: np.ascontiguousarray(plane[:, x:]) for key, plane in read_channels(tmp_path / "whole" / name).items()
+        }
+        (tmp_path / "moving" / name).write_bytes(exr_bytes(cut, at=(x, 0), display=display))
+    for kind in ("whole", "moving"):
+        assert run("denoise", tmp_path / kind, "-o", tmp_path / f"{kind} out", "--png", "--set", "iterations=1") == 0
+    whole, moving = (read_picture(tmp_path / f"{kind} out" / "frame.0003.exr") for kind in ("whole", "moving"))
+    np.testing.assert_array_equal(moving[:, 16:], whole[:, 16:])
+    assert not moving[:, :2].any()
+    assert moving[:, 2:].all()
+    windows = read_image(tmp_path / "moving out" / "frame.0003.exr").windows
+    assert windows.data == Window(2, 0, 38, 16)
+    assert windows.display == display
+    assert run("compare", tmp_path / "moving out", tmp_path / "whole out") == 0
+    assert run("check", tmp_path / "moving") in (0, 1)

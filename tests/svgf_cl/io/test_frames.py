@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tempfile
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -27,8 +26,6 @@ from svgf_cl.io.frames import (
     read_frame,
     write_frame,
 )
-from svgf_cl.io.pictures import is_picture, read_picture, write_picture
-from svgf_cl.io.shot import read_sequence
 from tests.disk import unprivileged
 
 
@@ -66,22 +63,6 @@ def test_a_frame_comes_back_bit_for_bit(frame: Frame) -> None:
     for name, value in frame.present().items():
         assert back[name].dtype == value.dtype
         np.testing.assert_array_equal(back[name], value, strict=True)
-
-
-@given(floats(4, 3, 3))
-@settings(deadline=None, max_examples=20)
-def test_a_picture_comes_back_bit_for_bit(picture: np.ndarray) -> None:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "out.exr"
-        write_picture(path, picture)
-        assert set(read_channels(path)) == {"R", "G", "B"}
-        np.testing.assert_array_equal(read_picture(path), picture, strict=True)
-
-
-def test_a_picture_can_be_read_out_of_a_frame(tmp_path: Path) -> None:
-    frame = plain_frame()
-    write_frame(tmp_path / "frame.0000.exr", frame)
-    np.testing.assert_array_equal(read_picture(tmp_path / "frame.0000.exr"), frame.color)
 
 
 def test_frames_are_sorted_by_number_and_nothing_else_is_a_frame(tmp_path: Path) -> None:
@@ -167,41 +148,6 @@ def test_a_frame_without_any_radiance_is_refused(tmp_path: Path) -> None:
     write_channels(path, planes)
     with pytest.raises(FileError, match=r"frame\.0000\.exr: Frame\.color: expected an array.*channels found"):
         read_frame(path)
-    with pytest.raises(FileError, match="expected channels R G B, found"):
-        read_picture(path)
-
-
-def test_frames_of_a_sequence_have_one_size(tmp_path: Path) -> None:
-    write_frame(frame_path(tmp_path, 0), plain_frame(3, 4))
-    write_frame(frame_path(tmp_path, 1), plain_frame(4, 4))
-    with pytest.raises(FileError, match=r"frame\.0001\.exr: expected 4x3 pixels as in .*0000\.exr, got 4x4"):
-        list(read_sequence(find_frames([tmp_path])))
-
-
-def test_frames_of_a_sequence_have_the_same_fields(tmp_path: Path) -> None:
-    radiance = np.ones((3, 4, 3), np.float32)
-    flat = plain_frame(albedo=radiance)
-    flat = replace(flat, motion=np.ascontiguousarray(flat.motion[..., :2]))
-    write_frame(frame_path(tmp_path, 0), flat)
-    write_frame(frame_path(tmp_path, 1), replace(flat, albedo=None, emission=radiance))
-    with pytest.raises(FileError, match=r"1\.exr: expected .*0000\.exr, got a frame without albedo, with emission"):
-        list(read_sequence(find_frames([tmp_path])))
-    write_frame(frame_path(tmp_path, 1), plain_frame(albedo=radiance))
-    with pytest.raises(FileError, match=r"0001\.exr: .* got a frame with motion\.Z"):
-        list(read_sequence(find_frames([tmp_path])))
-
-
-@pytest.mark.parametrize("field", ["color", "depth", "normal"])
-def test_a_field_of_nothing_but_nan_is_refused(tmp_path: Path, field: str) -> None:
-    frame = plain_frame()
-    write_frame(frame_path(tmp_path, 0), plain_frame(**{field: np.full_like(getattr(frame, field), np.nan)}))
-    with pytest.raises(FileError, match=rf"0000\.exr: expected finite values in {field}"):
-        list(read_sequence(find_frames([tmp_path])))
-
-
-def test_a_sequence_of_nothing_but_sky_is_fine(tmp_path: Path) -> None:
-    write_frame(frame_path(tmp_path, 0), plain_frame())
-    assert len(list(read_sequence(find_frames([tmp_path])))) == 1
 
 
 def test_an_inconsistent_frame_is_not_written(tmp_path: Path) -> None:
@@ -222,16 +168,6 @@ def test_a_frame_is_kept_for_what_it_was_made_from(tmp_path: Path) -> None:
         np.testing.assert_array_equal(kept.present()[name], value, strict=True)
     path.write_bytes(path.read_bytes()[:-1])
     assert kept_frame(path, "this") is None
-
-
-def test_a_picture_is_known_bit_by_bit(tmp_path: Path) -> None:
-    path, picture = tmp_path / "a.exr", np.array([[[0.0, np.nan, 1.0]]], np.float32)
-    assert not is_picture(path, picture)
-    write_picture(path, picture)
-    assert is_picture(path, picture)
-    assert not is_picture(path, -picture), "the sign of zero is a bit too"
-    path.write_bytes(path.read_bytes()[:-1])
-    assert not is_picture(path, picture)
 
 
 def test_a_folder_behind_a_closed_door_is_named(tmp_path: Path) -> None:

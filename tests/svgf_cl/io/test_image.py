@@ -1,0 +1,280 @@
+"""A file passes through whole: channels in their own types, parts, windows, attributes, to the last bit."""
+
+from __future__ import annotations
+
+import struct
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio  # noqa: N813
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from svgf_cl import FileError
+from svgf_cl.io.exr import read_attribute, read_channels, read_image, read_windows, write_channels, write_image
+from svgf_cl.io.image import Image
+from svgf_cl.io.window import Window
+from tests.exr_files import exr_bytes
+
+RGB = {name: np.full((3, 4), index, np.float32) for index, name in enumerate("RGB")}
+
+# A value of each type that an attribute has, and of one that nobody has heard of.
+ATTRIBUTES = {
+    "anInt": ("int", struct.pack("<i", -5)),
+    "aDouble": ("double", struct.pack("<d", 0.1)),
+    "aString": ("string", "grün".encode()),
+    "anEmptyString": ("string", b""),
+    "strings": ("stringvector", b"\1\0\0\0a\2\0\0\0bc"),
+    "floats": ("floatvector", struct.pack("<3f", 1, 2, 3)),
+    "aBox": ("box2f", struct.pack("<4f", 1, 2, 3, 4)),
+    "unheardOf": ("ofMyOwn", b"\1\2\3\4\5"),
+    "adoptedNeutral": ("v2f", struct.pack("<2f", 0.3, 0.3)),
+    "capDate": ("string", b"2020:01:02 03:04:05"),
+    "cameraTransform": ("m44f", struct.pack("<16f", *range(16))),
+    "worldToCamera": ("m44f", struct.pack("<16f", *range(16, 32))),
+    "worldToNDC": ("m44f", struct.pack("<16f", *range(32, 48))),
+    "chromaticities": ("chromaticities", struct.pack("<8f", 0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.32168, 0.33767)),
+    "comments": ("string", b"a comment"),
+    "owner": ("string", b"me"),
+    "ImageDescription": ("string", b"not the comment"),
+    "Software": ("string", b"a renderer"),
+    "colorInteropID": ("string", b"lin_ap1_scene"),
+    "oiio:ColorSpace": ("string", b"ACEScg"),
+    "envmap": ("envmap", b"\0"),
+    "textureformat": ("string", b"Plain Texture"),
+    "compression level": ("float", struct.pack("<f", 45)),
+    "dwaCompressionLevel": ("float", struct.pack("<f", 45)),
+    "framesPerSecond": ("rational", struct.pack("<iI", 24000, 1001)),
+    "keyCode": ("keycode", struct.pack("<7i", 1, 2, 3, 4, 5, 4, 64)),
+    "timeCode": ("timecode", struct.pack("<II", 0x01020304, 5)),
+    "smpte:TimeCode": ("string", b"not the time code"),
+    "xDensity": ("float", struct.pack("<f", 72)),
+    "view": ("string", b"left"),
+    "multiView": ("stringvector", b"\4\0\0\0left"),
+    "name": ("string", b"beauty"),
+    "cryptomatte/0123/manifest": ("string", b'{"box": "12345678"}' * 1000),
+    "a name that is longer than thirty-one bytes are": ("int", struct.pack("<i", 1)),
+}
+
+
+def passed_on(source: Path) -> Path:
+    """What comes out where a file is read and written."""
+    target = source.with_name("out.exr")
+    write_image(target, read_image(source))
+    return target
+
+
+def assert_passes(content: bytes, folder: Path) -> Image:
+    """What was read is what is read again, and OpenImageIO finds nothing wrong with it."""
+    (folder / "in.exr").write_bytes(content)
+    before, target = read_image(folder / "in.exr"), passed_on(folder / "in.exr")
+    after = read_image(target)
+    assert before.same_as(after)
+    assert after.same_as(before)
+    assert oiio.ImageBuf(str(target)).read(force=True)
+    return after
+
+
+def test_every_attribute_passes_and_none_is_added(tmp_path: Path) -> None:
+    image = assert_passes(exr_bytes(RGB, ATTRIBUTES, (-2, 5), Window(1, 2, 30, 20), aspect=2.0), tmp_path)
+    attributes = image.parts[0].attributes
+    usual = {"displayWindow", "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth"}
+    assert attributes.keys() == ATTRIBUTES.keys() | usual
+    assert {name: attributes[name] for name in ATTRIBUTES} == ATTRIBUTES
+    assert attributes["screenWindowCenter"] == ("v2f", struct.pack("<2f", 0.5, 0.25))
+    windows = read_windows(tmp_path / "out.exr")
+    assert windows.data == Window(-2, 5, 4, 3)
+    assert windows.display == Window(1, 2, 30, 20)
+    assert windows.pixel_aspect == 2.0
+
+
+def test_openimageio_understands_what_passed(tmp_path: Path) -> None:
+    assert_passes(exr_bytes(RGB, ATTRIBUTES), tmp_path)
+    for name, value in {
+        "Copyright": "me",
+        "DateTime": "2020:01:02 03:04:05",
+        "framesPerSecond": (24000, 1001),
+        "worldToNDC": tuple(range(32, 48)),
+        "Software": "a renderer",
+    }.items():
+        assert read_attribute(tmp_path / "out.exr", name) == value
+
+
+NAMES = st.text(
+    st.characters(codec="utf-8", exclude_characters="\0", exclude_categories=("Cs",)), min_size=1, max_size=40
+)
+LAYOUT = {"channels", "compression", "dataWindow", "lineOrder", "tiles", "type", "version", "chunkCount", "preview"}
+
+
+@given(st.dictionaries(NAMES.filter(lambda name: name not in LAYOUT), st.binary(max_size=20), max_size=4))
+@settings(deadline=None, max_examples=40)
+def test_attributes_of_any_name_pass(values: dict[str, bytes]) -> None:
+    attributes = {name: ("ofMyOwn", value) for name, value in values.items()}
+    with tempfile.TemporaryDirectory() as folder:
+        image = assert_passes(exr_bytes(RGB, attributes), Path(folder))
+    assert attributes.items() <= image.parts[0].attributes.items()
+
+
+@given(st.data())
+@settings(deadline=None, max_examples=40)
+def test_every_bit_of_every_type_passes(data: st.DataObject) -> None:
+    """NaN of any kind, infinities, ids beyond what a float can count to."""
+    shape = data.draw(st.tuples(st.integers(1, 20), st.integers(1, 5)))
+    types = data.draw(st.lists(st.sampled_from(("u4", "f2", "f4")), min_size=1, max_size=5))
+    planes = {f"c{i}": data.draw(hnp.arrays("u2" if t == "f2" else "u4", shape)).view(t) for i, t in enumerate(types)}
+    with tempfile.TemporaryDirectory() as folder:
+        image = assert_passes(exr_bytes(planes), Path(folder))
+        formats = oiio.ImageInput.open(str(Path(folder) / "out.exr")).spec()
+    for name, plane in planes.items():
+        found = image.planes[name]
+        assert found.dtype == (np.uint32 if plane.dtype == np.uint32 else np.float32)
+        assert found.astype(plane.dtype).tobytes() == plane.tobytes()
+        wanted = {"u": oiio.UINT32, "f": oiio.HALF if plane.itemsize == 2 else oiio.FLOAT}[plane.dtype.kind]
+        assert formats.channelformat(formats.channelindex(name)).basetype == wanted
+
+
+def test_the_same_planes_make_the_same_file_without_a_date(tmp_path: Path) -> None:
+    for name in ("a.exr", "b.exr"):
+        write_channels(tmp_path / name, RGB)
+    assert (tmp_path / "a.exr").read_bytes() == (tmp_path / "b.exr").read_bytes()
+    assert read_attribute(tmp_path / "a.exr", "DateTime") is None
+
+
+def test_what_the_pixels_are_no_longer_is_left_out(tmp_path: Path) -> None:
+    preview = {"preview": ("preview", struct.pack("<II", 1, 1) + b"\1\2\3\4")}
+    assert "preview" not in assert_passes(exr_bytes(RGB, preview), tmp_path).parts[0].attributes
+
+
+def test_planes_replaced_become_floats_and_all_else_stays(tmp_path: Path) -> None:
+    planes = {name: np.full((3, 4), 0.1, np.float16) for name in "RA"} | {"id": np.full((3, 4), 2**32 - 1, np.uint32)}
+    (tmp_path / "in.exr").write_bytes(exr_bytes(planes, ATTRIBUTES))
+    before = read_image(tmp_path / "in.exr")
+    red = np.full((3, 4), 0.123456789, np.float32)
+    write_image(tmp_path / "out.exr", before.with_planes({"R": red, "G": 2 * red}))
+    after = read_image(tmp_path / "out.exr")
+    assert after.planes.keys() == {"R", "G", "A", "id"}
+    np.testing.assert_array_equal(after.planes["R"], red, strict=True)
+    np.testing.assert_array_equal(after.planes["id"], planes["id"], strict=True)
+    assert after.parts[0].halves == {"A"}
+    assert after.parts[0].attributes == before.parts[0].attributes
+    alone = before.without("owner").with_planes_alone({"R": red})
+    assert alone.planes.keys() == {"R"}
+    assert alone.parts[0].attributes.keys() == before.parts[0].attributes.keys() - {"owner"}
+
+
+# Parts
+
+
+def write_parts(path: Path, parts: list[tuple[str, str]], **more: object) -> None:
+    """A file of parts, each a name and the channels it has; `more` sets what else OpenImageIO is told of the last."""
+    specs = []
+    for name, channels in parts:
+        spec = oiio.ImageSpec(4, 3, len(channels.split()), "float")
+        spec.channelnames = tuple(channels.split())
+        spec.attribute("oiio:subimagename", name)
+        specs.append(spec)
+    for name, value in more.items():
+        spec.attribute(name, value) if name == "view" else setattr(spec, name, value)
+    output = oiio.ImageOutput.create(str(path))
+    assert output.open(str(path), specs), output.geterror()
+    for index, spec in enumerate(specs):
+        assert not index or output.open(str(path), spec, "AppendSubimage")
+        assert output.write_image(np.full((3, 4, spec.nchannels), index, np.float32))
+    assert output.close()
+
+
+@pytest.mark.parametrize(
+    ("parts", "names"),
+    [
+        ([("rgba", "R G B A"), ("aov", "Z id")], "R G B A Z id"),
+        ([("rgba", "R G B"), ("albedo", "R G B")], "R G B albedo.R albedo.G albedo.B"),
+        ([("albedo", "R G B"), ("Beauty", "R G B A")], "albedo.R albedo.G albedo.B R G B A"),
+        ([("C", "R G B"), ("normal", "X Y Z"), ("motion", "X Y")],
+         "R G B normal.X normal.Y normal.Z motion.X motion.Y"),
+        ([("only", "R G B A"), ("depth", "Z A"), ("fog", "Z")], "R G B A depth.Z depth.A fog.Z"),
+        ([("a", "L.R L.G L.B"), ("b", "M.R M.G M.B")], "L.R L.G L.B M.R M.G M.B"),
+    ],
+)  # fmt: skip
+def test_channels_of_all_parts_are_read_and_written(parts: list[tuple[str, str]], names: str, tmp_path: Path) -> None:
+    write_parts(tmp_path / "in.exr", parts)
+    found = read_channels(tmp_path / "in.exr")
+    assert sorted(found) == sorted(names.split())
+    assert sorted(plane[0, 0] for plane in found.values()) == sorted(
+        index for index, (_, channels) in enumerate(parts) for _ in channels.split()
+    )
+    target = passed_on(tmp_path / "in.exr")
+    assert read_image(target).same_as(read_image(tmp_path / "in.exr"))
+    for path in (tmp_path / "in.exr", target):
+        source = oiio.ImageInput.open(str(path))
+        for index, (name, channels) in enumerate(parts):
+            assert source.seek_subimage(index, 0)
+            assert source.spec().get("oiio:subimagename") == name
+            assert sorted(source.spec().channelnames) == sorted(channels.split())
+
+
+@pytest.mark.parametrize(
+    ("parts", "more", "words"),
+    [
+        ([("one", "R G B"), ("two", "R G B")], {}, "expected R G B in one part, .*; found them in one, two"),
+        ([("rgba", "R G B"), ("beauty", "R G B")], {}, ".*; found them in rgba, beauty"),
+        ([("a", "Z a.Z"), ("b", "Z")], {}, "expected channels of different names, found two called a.Z"),
+        ([("a", "R G B"), ("b", "Z")], {"x": 1}, "expected all parts .*4x3 at 0,0 .*4x3 at 1,0 .*in part b"),
+        ([("a", "R G B"), ("b", "Z")], {"deep": True}, "expected flat pixels, got deep ones; flatten"),
+    ],
+)  # fmt: skip
+def test_parts_that_cannot_be_one_image_are_refused(parts, more: dict[str, object], words: str, tmp_path: Path) -> None:
+    if "deep" in more:
+        write_deep(tmp_path / "in.exr")
+    else:
+        write_parts(tmp_path / "in.exr", parts, **more)
+    with pytest.raises(FileError, match=rf"in\.exr: {words}") as error:
+        read_channels(tmp_path / "in.exr")
+    assert "\n" not in str(error.value)
+
+
+def write_deep(path: Path) -> None:
+    spec = oiio.ImageSpec(2, 2, 2, "float")
+    spec.channelnames, spec.deep = ("R", "Z"), True
+    deep = oiio.DeepData()
+    deep.init(spec)
+    output = oiio.ImageOutput.create(str(path))
+    assert output.open(str(path), spec)
+    assert output.write_deep_image(deep)
+    output.close()
+
+
+def test_several_views_are_refused(tmp_path: Path) -> None:
+    both = {"multiView": ("stringvector", b"\4\0\0\0left\5\0\0\0right")}
+    (tmp_path / "a.exr").write_bytes(exr_bytes({**RGB, "right.R": RGB["R"]}, both))
+    with pytest.raises(FileError, match=r"a\.exr: expected one view, got left, right"):
+        read_channels(tmp_path / "a.exr")
+
+
+@pytest.mark.parametrize("names", ["Y RY BY", "R G B id"])
+def test_channels_of_fewer_pixels_are_refused(names: str, tmp_path: Path) -> None:
+    planes = {name: np.ones((4, 4), np.float16) for name in names.split()}
+    sparse = {name: 2 for name in planes if name in ("RY", "BY", "id")}
+    (tmp_path / "a.exr").write_bytes(exr_bytes(planes, sampling=sparse))
+    with pytest.raises(FileError, match=r"a\.exr: expected an OpenEXR file, got Subsampled channels are not") as error:
+        read_channels(tmp_path / "a.exr")
+    assert "\n" not in str(error.value)
+
+
+def test_of_tiles_in_several_resolutions_the_finest_is_read(tmp_path: Path) -> None:
+    picture = np.random.default_rng(0).random((64, 48, 3), np.float32)
+    image = oiio.ImageBuf(oiio.ImageSpec(48, 64, 3, "float"))
+    image.set_pixels(image.roi, picture)
+    oiio.ImageBufAlgo.make_texture(oiio.MakeTxTexture, image, str(tmp_path / "tiled.exr"), oiio.ImageSpec())
+    assert oiio.ImageInput.open(str(tmp_path / "tiled.exr")).spec().tile_width
+    for path in (tmp_path / "tiled.exr", passed_on(tmp_path / "tiled.exr")):
+        planes = read_channels(path)
+        np.testing.assert_array_equal(np.stack([planes[name] for name in "RGB"], axis=-1), picture)
+
+
+def test_a_display_window_of_any_size_costs_no_memory(tmp_path: Path) -> None:
+    (tmp_path / "a.exr").write_bytes(exr_bytes(RGB, display=Window(0, 0, 10**6, 10**6)))
+    with pytest.raises(FileError, match="expected a display window of at most 268435456 pixels, got 1000000x1000000"):
+        read_windows(tmp_path / "a.exr")
