@@ -51,6 +51,8 @@ def write_image(path: Path, image: Image) -> None:
         try:
             _write_pixels(path, pixels, image)
             copy_with_header(pixels, aside, [part.attributes for part in image.parts], integers)
+            if not _has_last_rows(aside):
+                raise FileError(f"{path}: cannot be written (one of the attributes that it would keep is damaged)")
         finally:
             pixels.unlink(missing_ok=True)
 
@@ -205,6 +207,7 @@ def _opened(path: Path, formats: Collection[str]) -> Iterator[tuple[Any, list[oi
             got = f"the format {source.format_name()}" if source else one_line(oiio.geterror())
             raise FileError(f"{path}: expected {_described(formats)}, got {got}")
         specs = _specs(source)
+        "".join(name for spec in specs for name in spec.channelnames).encode()
         _check_claims(path, specs)
         _check_kind(path, specs)
         yield source, specs
@@ -251,7 +254,7 @@ def _views(spec: oiio.ImageSpec) -> list[str]:
     """The views that a part says it has, such as left and right."""
     listed = spec.get("multiView")
     named = [spec.get("view"), *(listed if isinstance(listed, tuple) else ())]
-    return [view for view in named if view and isinstance(view, str)]
+    return [view for view in named if isinstance(view, str) and view]
 
 
 def _described_windows(spec: oiio.ImageSpec) -> str:
@@ -263,10 +266,12 @@ def _described_windows(spec: oiio.ImageSpec) -> str:
 def _has_last_rows(path: Path) -> bool:
     """Whether the end of a file has been written: of a disk that is full by then OpenImageIO says nothing."""
     source: Any = oiio.ImageInput.open(_name(path))
-    specs = _specs(source) if source else []
-    return bool(specs) and all(
+    if source is None:
+        oiio.geterror()  # or it is printed as the process ends
+        return False
+    return all(
         source.read_scanlines(index, 0, spec.y + spec.height - 1, spec.y + spec.height, 0, 0, 1, "float") is not None
-        for index, spec in enumerate(specs)
+        for index, spec in enumerate(_specs(source))
     )
 
 

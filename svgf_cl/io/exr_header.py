@@ -104,7 +104,7 @@ def _header(content: mmap.mmap, parts: Sequence[Attributes]) -> bytes:
 def _parsed(content: mmap.mmap) -> tuple[list[Attributes], int]:
     """The attributes of each part, and where the header ends."""
     if len(content) < START:
-        raise ValueError("too short")
+        raise ValueError("expected a whole header, got one that is too short")
     multipart = struct.unpack_from("<I", content, 4)[0] & MULTIPART
     part, position = _parsed_part(content, START)
     parts = [part]
@@ -120,12 +120,14 @@ def _parsed_part(content: mmap.mmap, position: int) -> tuple[Attributes, int]:
     while content[position : position + 1] != b"\0":
         name, position = _text(content, position)
         kind, position = _text(content, position)
+        if not kind:
+            raise ValueError("expected a whole header, got an attribute of no type")
         if len(content) < position + 4:
-            raise ValueError("cut off")
+            raise ValueError("expected a whole header, got one that is cut off")
         (size,) = struct.unpack_from("<i", content, position)
         position += 4
         if not 0 <= size <= len(content) - position:
-            raise ValueError(f"an attribute of {size} bytes")
+            raise ValueError(f"expected a whole header, got an attribute of {size} bytes")
         part[name] = kind, content[position : position + size]
         position += size
     return part, position + 1
@@ -135,7 +137,7 @@ def _text(content: mmap.mmap | bytes, position: int) -> tuple[str, int]:
     """The text that begins at `position`, and where it ends."""
     end = content.find(b"\0", position)
     if end < 0:
-        raise ValueError("cut off")
+        raise ValueError("expected a whole header, got one that is cut off")
     return content[position:end].decode(), end + 1
 
 

@@ -148,6 +148,22 @@ def test_what_the_pixels_are_no_longer_is_left_out(tmp_path: Path) -> None:
     assert "preview" not in assert_passes(exr_bytes(RGB, preview), tmp_path).parts[0].attributes
 
 
+def test_a_header_with_wrong_bits_is_refused_or_passes(tmp_path: Path) -> None:
+    planes = {**RGB, "A": np.ones((3, 4), np.float16), "id": np.ones((3, 4), np.uint32)}
+    content, rng, path, passed = exr_bytes(planes, ATTRIBUTES), np.random.default_rng(2), tmp_path / "in.exr", 0
+    for _ in range(200):
+        damaged = np.frombuffer(content, np.uint8).copy()
+        places = rng.integers(0, 2500, rng.integers(1, 4))
+        damaged[places] ^= (1 << rng.integers(0, 8, len(places))).astype(np.uint8)
+        path.write_bytes(damaged.tobytes())
+        try:
+            assert read_image(passed_on(path)).same_as(read_image(path))
+            passed += 1
+        except FileError as error:
+            assert "expected" in str(error) or "one of the attributes that it would keep is damaged" in str(error)  # noqa: PT017
+    assert 20 < passed < 180
+
+
 def test_planes_replaced_become_floats_and_all_else_stays(tmp_path: Path) -> None:
     planes = {name: np.full((3, 4), 0.1, np.float16) for name in "RA"} | {"id": np.full((3, 4), 2**32 - 1, np.uint32)}
     (tmp_path / "in.exr").write_bytes(exr_bytes(planes, ATTRIBUTES))
