@@ -80,22 +80,42 @@ def check_sequence(frames: Iterable[Frame]) -> Report:
     FrameError
         A field is missing, or of another shape or type than the denoiser takes.
     """
-    sums: dict[Check, Array] = {}
-    views: list[View] = []
-    count = 0
+    inspection = Inspection()
     for frame in frames:
-        frame.check(views[-1].frame.shape if views else frame.shape)
-        views = [*views[-1:], View.of(frame)]
-        count += 1
+        inspection.add(frame)
+    return inspection.report()
+
+
+class Inspection:
+    """What all checks say of the frames of a shot, which come one after the other; two are held at a time."""
+
+    def __init__(self) -> None:
+        self._sums: dict[Check, Array] = {}
+        self._views: list[View] = []
+        self._run = self._longest = 0
+
+    def add(self, frame: Frame) -> None:
+        """Look at the next frame; raise `FrameError` as `check_sequence`."""
+        frame.check(self._views[-1].frame.shape if self._views else frame.shape)
+        self._views = [*self._views[-1:], View.of(frame)]
+        self._run += 1
+        self._longest = max(self._longest, self._run)
         for check in CHECKS:
-            told = check.ask(views)
+            told = check.ask(self._views)
             if told is not None:
-                sums[check] = sums.get(check, 0) + told
-    return judged(sums, count)
+                self._sums[check] = self._sums.get(check, 0) + told
+
+    def cut(self) -> None:
+        """The next frame does not follow on the last one."""
+        self._views, self._run = [], 0
+
+    def report(self) -> Report:
+        """What the frames so far say."""
+        return judged(self._sums, self._longest)
 
 
 def judged(sums: dict[Check, Array], count: int) -> Report:
-    """What the sums over `count` frames say."""
+    """What the sums over frames say, of which at most `count` came in a row."""
     findings: list[Finding] = []
     unknown: list[Unknown] = []
     passed: list[str] = []

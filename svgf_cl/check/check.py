@@ -41,7 +41,7 @@ class Check:
         return self.measure(*views[-self.frames :]) if len(views) >= self.frames else None
 
     def verdict(self, total: Array | None, wrong: set[str], count: int) -> Sequence[Finding | Unknown]:
-        """Judge the sum over `count` frames, some fields being known to be wrong."""
+        """Judge the sum over frames, at most `count` of them in a row, some fields being known to be wrong."""
         first = [name for name in self.trusts if name in wrong]
         if first:
             return [Unknown(self.topic, f"mend {first[0]} first")]

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import io
 import sys
-from collections.abc import Callable, Sequence
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.metadata import EntryPoint, entry_points
 from typing import Annotated, Any, NoReturn
@@ -104,7 +106,8 @@ def leave(app: typer.Typer, arguments: Sequence[str], name: str, usage: str) -> 
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     try:
-        sys.exit(app(list(arguments), prog_name=usage, standalone_mode=False))
+        with plain_warnings(name):
+            sys.exit(app(list(arguments), prog_name=usage, standalone_mode=False))
     except SvgfError as error:
         complaint = str(error)
     except UsageError as error:
@@ -118,6 +121,22 @@ def leave(app: typer.Typer, arguments: Sequence[str], name: str, usage: str) -> 
         sys.exit(130)
     print(f"{name}: {printable(complaint)}", file=sys.stderr)
     sys.exit(2)
+
+
+@contextmanager
+def plain_warnings(name: str) -> Iterator[None]:
+    """Inside, what is meant for the user is one line on stderr; Python would also show where in the code it is."""
+    with warnings.catch_warnings():
+        usual = warnings.showwarning
+
+        def show(message: Warning | str, category: type[Warning], *where: Any, **rest: Any) -> None:
+            if category is UserWarning:
+                print(f"{name}: warning: {printable(one_line(message))}", file=sys.stderr)
+            else:
+                usual(message, category, *where, **rest)
+
+        warnings.showwarning = show
+        yield
 
 
 def printable(text: str) -> str:

@@ -2,31 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from svgf_cl.check import check_sequence
+from svgf_cl.check import Inspection
 from svgf_cl.cli.console import show, tracked
+from svgf_cl.cli.options import AllowGaps, Frames
 from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Frame
 from svgf_cl.io.atomic import make_folder
 from svgf_cl.io.display import write_image
-from svgf_cl.io.frames import find_frames
+from svgf_cl.io.sequence import after_gaps, find_frames
 from svgf_cl.io.shot import read_sequence
 
 
 def check(
-    frames: Annotated[
-        list[Path],
-        typer.Argument(metavar="FRAMES", help="EXR files in order, or folders of frame.0000.exr and so on."),
-    ],
+    frames: Frames,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="FILE", help="Also draw the fields of the last frame: .png."),
     ] = None,
+    allow_gaps: AllowGaps = False,
 ) -> None:
     """Look for what is wrong with the frames of a shot, before they are denoised.
 
@@ -41,9 +39,15 @@ def check(
     """
     if output and output.suffix != ".png":
         raise SvgfError(f"--output: expected a file named *.png, got {output}")
-    sources = find_frames(frames)
+    sources = find_frames(frames, allow_gaps=allow_gaps)
+    inspection, cuts = Inspection(), after_gaps(sources)
     last: list[Frame] = []
-    report = check_sequence(kept(tracked(read_sequence(sources), len(sources), "checking"), last))
+    for path, frame in zip(sources, tracked(read_sequence(sources), len(sources), "checking"), strict=True):
+        if path in cuts:
+            inspection.cut()
+        inspection.add(frame)
+        last = [*last[-1:], frame]
+    report = inspection.report()
     if output:
         draw(output, last)
     title = f"{len(sources)} frames: {len(report.findings)} findings, {len(report.passed)} checks passed"
@@ -55,13 +59,6 @@ def check(
     for line in report.unknown:
         print(line)
     raise typer.Exit(1 if report.findings else 0)
-
-
-def kept(frames: Iterable[Frame], last: list[Frame]) -> Iterator[Frame]:
-    """Pass frames on, and keep the last two."""
-    for frame in frames:
-        last[:] = [*last[-1:], frame]
-        yield frame
 
 
 def draw(path: Path, last: list[Frame]) -> None:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 import typer
 
 from svgf_cl.cli.console import kept_of, show_times, tracked
-from svgf_cl.cli.options import Exposure, FilterName, Output, SettingTexts, parse_settings
+from svgf_cl.cli.options import AllowGaps, Exposure, FilterName, Frames, Output, SettingTexts, parse_settings
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.errors import FileError
 from svgf_cl.filters import Settings
@@ -20,24 +20,22 @@ from svgf_cl.filters.filter import Filter
 from svgf_cl.io.atomic import make_folder
 from svgf_cl.io.display import to_bytes, write_image
 from svgf_cl.io.exr import write_image as write_exr
-from svgf_cl.io.frames import check_leftovers, find_frames
 from svgf_cl.io.image import Image
 from svgf_cl.io.pictures import holds, picture_file
+from svgf_cl.io.sequence import after_gaps, check_leftovers, find_frames
 from svgf_cl.io.shot import read_shot, shared_window
 from svgf_cl.io.window import placed
 
 
 def denoise(
-    frames: Annotated[
-        list[Path],
-        typer.Argument(metavar="FRAMES", help="EXR files in order, or folders of frame.0000.exr and so on."),
-    ],
+    frames: Frames,
     output: Output,
     filter_: FilterName = Settings.name,
     set_: SettingTexts = [],  # noqa: B006  # never changed; typer wants the default spelled here
     png: Annotated[bool, typer.Option("--png", help="Also write every picture tone-mapped as PNG.")] = False,
     exposure: Exposure = 0.0,
     plain: Annotated[bool, typer.Option("--plain", help="Write R G B alone, no other channel.")] = False,
+    allow_gaps: AllowGaps = False,
 ) -> None:
     """Denoise a sequence of EXR frames.
 
@@ -56,7 +54,7 @@ def denoise(
       svgf-cl denoise out/box -o out/box-eaw --filter eaw --set sigma_color=2
     """
     settings = parse_settings(filter_, set_)
-    sources = find_frames(frames)
+    sources = find_frames(frames, allow_gaps=allow_gaps)
     targets = target_paths(sources, make_folder(output))
     shown = [target.with_suffix(".png") for target in targets if png]
     check_leftovers(output, [*targets, *shown])
@@ -77,14 +75,12 @@ def denoise(
 
 
 def target_paths(sources: Sequence[Path], folder: Path) -> list[Path]:
-    """Name the picture of each source; `FileError` where two would be one file, or one would replace a source."""
-    targets = [folder / source.with_suffix(".exr").name for source in sources]
+    """Name the picture of each source; `FileError` where one would replace a source."""
+    targets = [folder / f"{s.stem if s.suffix.lower() == '.exr' else s.name}.exr" for s in sources]
     read = {os.path.realpath(source) for source in sources}
     for target, source in zip(targets, sources, strict=True):
         if os.path.realpath(target) in read:
             raise FileError(f"{target}: expected an output folder other than the input's, got {source.parent}")
-    if len(set(targets)) < len(targets):
-        raise FileError(f"{folder}: expected frames of different names, got two that are both called the same")
     return targets
 
 
@@ -92,7 +88,9 @@ def denoised(
     sources: Sequence[Path], settings: Filter
 ) -> Iterator[tuple[Image, npt.NDArray[np.float32], dict[str, float]]]:
     """Read and denoise one frame after the other: its file, its picture, and milliseconds per pass."""
-    window, denoiser = shared_window(sources), None
-    for image, frame in read_shot(sources, window):
+    window, cuts, denoiser = shared_window(sources), after_gaps(sources), None
+    for path, (image, frame) in zip(sources, read_shot(sources, window), strict=True):
         denoiser = denoiser or Denoiser(frame.shape, settings=settings)
+        if path in cuts:
+            denoiser.reset()
         yield image, placed(denoiser.denoise(frame), window, image.windows.data, 0.0), denoiser.profile()

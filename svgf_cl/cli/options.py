@@ -36,6 +36,15 @@ def check_threshold(value: float | None) -> float | None:
     return value
 
 
+Frames = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="FRAMES", help="The EXR files of one shot, in any order, or their folder; they are sorted by number."
+    ),
+]
+AllowGaps = Annotated[
+    bool, typer.Option("--allow-gaps", help="Take a shot that lacks frames; begin anew behind each gap, as at a cut.")
+]
 Output = Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Folder to write to; made if missing.")]
 Exposure = Annotated[
     float,

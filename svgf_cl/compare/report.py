@@ -9,8 +9,8 @@ from svgf_cl.compare.metrics import Metrics, mean, measure
 from svgf_cl.errors import FileError
 from svgf_cl.frame import extent
 from svgf_cl.io.atomic import require
-from svgf_cl.io.frames import find_numbered, frame_number
 from svgf_cl.io.pictures import read_picture
+from svgf_cl.io.sequence import find_numbered, frame_number
 
 COLUMNS = ("frame", "PSNR dB", "SSIM", "relMSE")
 
@@ -23,20 +23,17 @@ def pairs(a: Path, b: Path) -> dict[str, tuple[Path, Path]]:
         raise FileError(f"expected two files or two folders, got {a} and {b}")
     if not a.is_dir():
         return {a.name: (a, b)}
-    pictures = numbered(a, "frame", "reference")
-    references = numbered(b, "reference", "frame")
+    pictures = numbered(a, "frame")
+    references = numbered(b, "reference")
     for number, path in references.items():
         if number not in pictures:
             raise FileError(f"{a}: expected a picture number {number} to compare with {path}, found none")
     return {str(number): (pictures[number], path) for number, path in references.items()}
 
 
-def numbered(folder: Path, *stems: str) -> dict[int | None, Path]:
-    """Find the pictures of `folder` by number, of the first of `stems` that has any."""
-    for stem in stems:
-        if files := find_numbered(folder, stem):
-            return {frame_number(path): path for path in files}
-    raise FileError(f"{folder}: expected files named {stems[0]}.0000.exr in this folder, found none")
+def numbered(folder: Path, stem: str) -> dict[int | None, Path]:
+    """Find the pictures of `folder` by number: those called so, or the one sequence it holds."""
+    return {frame_number(path): path for path in find_numbered(folder, stem)}
 
 
 def measured(picture: Path, reference: Path, exposure: float) -> Metrics:

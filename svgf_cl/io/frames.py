@@ -6,9 +6,7 @@ are called ``frame.0000.exr``, references ``reference.0000.exr``; the number is 
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from itertools import pairwise
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +14,6 @@ import numpy.typing as npt
 
 from svgf_cl.errors import FileError, FrameError
 from svgf_cl.frame import REQUIRED, Frame
-from svgf_cl.io.atomic import entries, require
 from svgf_cl.io.exr import (
     read_attribute,
     read_channels,
@@ -39,61 +36,11 @@ CHANNEL_NAMES: dict[str, tuple[str, ...]] = {
 }
 MAX_ID = 2**24  # of ids in a channel of floats
 MADE_FROM = "svgf_cl:made_from"  # the attribute that tells what a frame was made from
-NUMBERED = re.compile(r"(frame|reference)\.\d+\.exr|(frame|still)\.\d+\.png")
 
 
 def frame_path(folder: Path, number: int, stem: str = "frame") -> Path:
     """Name the file of frame `number` in `folder`: ``frame.0007.exr``."""
     return folder / f"{stem}.{number:04d}.exr"
-
-
-def frame_number(path: Path) -> int | None:
-    """Return the number in a name like ``frame.0007.exr``; None where there is none."""
-    match = re.search(r"\.(\d+)\.exr$", path.name)
-    return int(match[1]) if match else None
-
-
-def find_numbered(folder: Path, stem: str) -> list[Path]:
-    """Find every ``stem.NUMBER.exr`` in `folder`, sorted by number."""
-    name = re.compile(re.escape(stem) + r"\.(\d+)\.exr")
-    found = [(int(match[1]), path) for path in entries(folder) if (match := name.fullmatch(path.name))]
-    return [path for _, path in sorted(found)]
-
-
-def find_frames(paths: Iterable[Path]) -> list[Path]:
-    """Expand folders to the ``frame.NUMBER.exr`` in them, sorted by number; files stay as given.
-
-    Raises
-    ------
-    FileError
-        Where a path is missing, or a folder holds no frame or lacks one between two others.
-    """
-    found: list[Path] = []
-    for path in paths:
-        require(path)
-        files = find_numbered(path, "frame") if path.is_dir() else [path]
-        if not files:
-            raise FileError(f"{path}: expected files named frame.0000.exr in this folder, found none")
-        if path.is_dir():
-            check_gaps(files)
-        found += files
-    return found
-
-
-def check_gaps(files: Sequence[Path]) -> None:
-    """Raise `FileError` where a number is missing: the next frame's motion would lead to the wrong one."""
-    for before, after in pairwise(files):
-        missing = (frame_number(before) or 0) + 1
-        if missing < (frame_number(after) or 0):
-            gap = frame_path(before.parent, missing)
-            raise FileError(f"{gap}: expected this frame between {before.name} and {after.name}, found none")
-
-
-def check_leftovers(folder: Path, written: Collection[Path]) -> None:
-    """Raise `FileError` where pictures of an earlier run would stay in `folder` and pass for a part of this one."""
-    for path in sorted(entries(folder) if folder.is_dir() else []):
-        if NUMBERED.fullmatch(path.name) and path not in written:
-            raise FileError(f"{path}: left by an earlier run of other length; delete it, or choose another folder")
 
 
 def write_frame(path: Path, frame: Frame, made_from: str = "") -> None:

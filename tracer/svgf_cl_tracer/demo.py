@@ -27,9 +27,10 @@ from svgf_cl.filters import Settings
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.atomic import make_folder
 from svgf_cl.io.display import Bytes, to_bytes, write_image
-from svgf_cl.io.frames import check_leftovers, frame_path, kept_frame, write_frame
+from svgf_cl.io.frames import frame_path, kept_frame, write_frame
 from svgf_cl.io.panels import still, write_preview
 from svgf_cl.io.pictures import is_picture, read_picture, write_picture
+from svgf_cl.io.sequence import check_leftovers
 from svgf_cl_tracer.references import CHUNK, chunks
 
 # From here on the history is long enough for the filter to be judged by.

@@ -10,7 +10,7 @@ import pyopencl.array as cl_array
 import pytest
 
 from svgf_cl import Frame, FrameError, check_frame, check_sequence
-from svgf_cl.check import CHECKS, camera, depth, motion, surfaces, values
+from svgf_cl.check import CHECKS, Inspection, camera, depth, motion, surfaces, values
 from svgf_cl.check.check import Check
 from svgf_cl.check.finding import Finding, Unknown
 from svgf_cl.io.synthetic import room_frames
@@ -58,6 +58,16 @@ def test_what_relies_on_a_wrong_field_is_put_off(room: list[Frame]) -> None:
     wrong = [replace(frame, motion=frame.motion * np.float32([-1, -1, 1])) for frame in room]
     untold = {unknown.topic: unknown.why for unknown in check_sequence(wrong).unknown}
     assert untold[surfaces.NAMES.topic] == "mend motion first"
+
+
+def test_frames_on_both_sides_of_a_cut_are_not_compared(room: list[Frame]) -> None:
+    inspection = Inspection()
+    for frame in (*room[:2], *[replace(frame, motion=-frame.motion) for frame in room[3:1:-1]]):
+        inspection.cut()
+        inspection.add(frame)
+    report = inspection.report()
+    assert not report.findings
+    assert {unknown.why for unknown in report.unknown} >= {"it takes 2 frames in a row"}
 
 
 def test_a_warning_puts_nothing_off() -> None:

@@ -70,3 +70,12 @@ def test_a_picture_of_another_format_is_refused_before_anything_is_read(
 def test_a_file_without_a_field_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(tmp_path) == 2
     assert "frame.0000.exr" in capsys.readouterr().err
+
+
+def test_a_gap_is_a_cut(tmp_path: Path, room: list[Frame], capsys: pytest.CaptureFixture[str]) -> None:
+    folder = written(tmp_path, room)
+    frame_path(folder, 1).unlink()
+    assert run(folder) == 2
+    assert "--allow-gaps" in capsys.readouterr().err
+    assert run(folder, "--allow-gaps") == 0
+    assert "motion: direction, axes, unit: not checked: it takes 2 frames in a row" in capsys.readouterr().out

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,9 +25,38 @@ def test_settings_reach_the_filter(rendered: Path, tmp_path: Path, capsys: pytes
     assert "atrous 3" not in said
 
 
-def test_single_files_are_denoised_in_the_order_given(rendered: Path, tmp_path: Path) -> None:
-    assert run("denoise", rendered / NAMES[0], rendered / NAMES[1], "-o", tmp_path) == 0
-    assert sorted(path.name for path in tmp_path.iterdir()) == NAMES[:2]
+def test_single_files_are_denoised_in_the_order_of_their_numbers(rendered: Path, tmp_path: Path) -> None:
+    for number, place in enumerate((9, 10, 11)):
+        shutil.copy(rendered / NAMES[number], tmp_path / f"shot.{place}.exr")
+    assert run("denoise", rendered, "-o", tmp_path / "right") == 0
+    assert run("denoise", *sorted(tmp_path.glob("*.exr")), "-o", tmp_path / "out") == 0
+    for number, place in enumerate((9, 10, 11)):
+        assert (tmp_path / "out" / f"shot.{place}.exr").read_bytes() == (
+            tmp_path / "right" / NAMES[number]
+        ).read_bytes()
+
+
+def test_history_ends_at_a_gap(frames: Path, tmp_path: Path, refused) -> None:
+    frames.joinpath(NAMES[1]).unlink()
+    refused("--allow-gaps", "denoise", frames, "-o", tmp_path / "out")
+    assert run("denoise", frames, "-o", tmp_path / "out", "--allow-gaps") == 0
+    assert run("denoise", frames / NAMES[2], "-o", tmp_path / "alone") == 0
+    assert contents(tmp_path / "alone").items() < contents(tmp_path / "out").items()
+
+
+def test_a_warning_is_one_line(frames: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (frames / "frame.0003.exr.part").touch()
+    assert run("denoise", frames, "-o", tmp_path) == 0
+    said = capsys.readouterr().err
+    assert said.startswith(f"svgf-cl: warning: {frames}: not read, though named much like ")
+    assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize("name", ["shot.EXR", "shot", "shot.v1.tif"])
+def test_a_picture_is_called_as_its_frame(name: str, rendered: Path, tmp_path: Path) -> None:
+    shutil.copy(rendered / NAMES[0], tmp_path / name)
+    assert run("denoise", tmp_path / name, "-o", tmp_path / "out") == 0
+    assert [path.name for path in (tmp_path / "out").iterdir()] == [f"{name.removesuffix('.EXR')}.exr"]
 
 
 @pytest.mark.parametrize("stops", ["2000", "-65", "nan", "inf"])
@@ -79,7 +109,7 @@ def test_an_output_that_cannot_be_written(rendered: Path, tmp_path: Path, refuse
 def test_denoise_never_replaces_its_input(rendered: Path, tmp_path: Path, refused) -> None:
     refused("expected an output folder other than the input's", "denoise", rendered, "-o", rendered)
     twice = (rendered / NAMES[0], rendered / NAMES[0])
-    refused("frames of different names", "denoise", *twice, "-o", tmp_path / "out")
+    refused("expected every file once", "denoise", *twice, "-o", tmp_path / "out")
 
 
 @pytest.mark.parametrize(

@@ -17,16 +17,11 @@ from svgf_cl.io.exr import read_channels, write_channels
 from svgf_cl.io.frames import (
     CHANNEL_NAMES,
     MAX_ID,
-    check_leftovers,
-    find_frames,
-    find_numbered,
-    frame_number,
     frame_path,
     kept_frame,
     read_frame,
     write_frame,
 )
-from tests.disk import unprivileged
 
 
 def floats(*shape: int) -> st.SearchStrategy[np.ndarray]:
@@ -63,51 +58,6 @@ def test_a_frame_comes_back_bit_for_bit(frame: Frame) -> None:
     for name, value in frame.present().items():
         assert back[name].dtype == value.dtype
         np.testing.assert_array_equal(back[name], value, strict=True)
-
-
-def test_frames_are_sorted_by_number_and_nothing_else_is_a_frame(tmp_path: Path) -> None:
-    for name in ("frame.10000.exr", "frame.9998.exr", "frame.9999.exr", "reference.0002.exr", "frame.0003.png"):
-        (tmp_path / name).touch()
-    wanted = ["frame.9998.exr", "frame.9999.exr", "frame.10000.exr"]
-    assert [path.name for path in find_frames([tmp_path])] == wanted
-    assert find_numbered(tmp_path, "reference") == [tmp_path / "reference.0002.exr"]
-    assert [frame_number(tmp_path / name) for name in wanted] == [9998, 9999, 10000]
-    assert frame_number(Path("view.exr")) is None
-
-
-def test_a_gap_in_a_folder_is_named(tmp_path: Path) -> None:
-    for number in (3, 4, 7):
-        frame_path(tmp_path, number).touch()
-    with pytest.raises(FileError, match=r"frame\.0005\.exr: expected this frame between frame\.0004\.exr and"):
-        find_frames([tmp_path])
-    files = [frame_path(tmp_path, 3), frame_path(tmp_path, 7)]
-    assert find_frames(files) == files, "chosen by hand"
-
-
-def test_leftovers_are_named(tmp_path: Path) -> None:
-    written = [frame_path(tmp_path, 0), tmp_path / "still.0000.png"]
-    check_leftovers(tmp_path / "nowhere", written)
-    for path in (*written, tmp_path / "photo.0007.exr", tmp_path / "preview.webp"):
-        path.touch()
-    check_leftovers(tmp_path, written)
-    for name in ("frame.0001.exr", "frame.0007.png", "reference.0000.exr", "still.0001.png"):
-        (tmp_path / name).touch()
-        with pytest.raises(FileError, match=f"{name}: left by an earlier run"):
-            check_leftovers(tmp_path, written)
-        (tmp_path / name).unlink()
-
-
-def test_files_are_taken_as_given(tmp_path: Path) -> None:
-    path = tmp_path / "any name.exr"
-    path.touch()
-    assert find_frames([path]) == [path]
-
-
-def test_an_empty_or_missing_folder_is_an_error(tmp_path: Path) -> None:
-    with pytest.raises(FileError, match=r"expected files named frame\.0000\.exr"):
-        find_frames([tmp_path])
-    with pytest.raises(FileError, match="nowhere: expected a file or a folder, found nothing"):
-        find_frames([tmp_path / "nowhere"])
 
 
 def test_a_great_id_is_refused_and_leaves_no_file(tmp_path: Path) -> None:
@@ -168,8 +118,3 @@ def test_a_frame_is_kept_for_what_it_was_made_from(tmp_path: Path) -> None:
         np.testing.assert_array_equal(kept.present()[name], value, strict=True)
     path.write_bytes(path.read_bytes()[:-1])
     assert kept_frame(path, "this") is None
-
-
-def test_a_folder_behind_a_closed_door_is_named(tmp_path: Path) -> None:
-    with unprivileged(tmp_path), pytest.raises(FileError, match="cannot be read \\(Permission denied\\)"):
-        find_frames([tmp_path])

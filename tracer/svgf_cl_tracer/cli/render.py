@@ -12,7 +12,8 @@ import typer
 from svgf_cl.cli.console import kept_of, share_bar, tracked
 from svgf_cl.cli.options import MAX_FRAMES, Output, Size, parse_size
 from svgf_cl.io.atomic import make_folder
-from svgf_cl.io.frames import check_leftovers, frame_path, kept_frame, write_frame
+from svgf_cl.io.frames import frame_path, kept_frame, write_frame
+from svgf_cl.io.sequence import check_leftovers
 from svgf_cl_tracer.cli.scenes import open_scene, read_sky, require_tracer
 
 if TYPE_CHECKING:
