@@ -159,12 +159,13 @@ def in_order(files: Sequence[Path]) -> list[Path]:
     check_one_shot(names)
     names.sort(key=lambda name: name.number)
     check_doubles(names)
-    width = min(len(name.digits.lstrip("-")) for name in [n for n in names if n.number >= 0] or names)
-    odd = [name.path.name for name in names if not name.is_padded(width)]
+    widths = {1, *(len(name.digits.lstrip("-")) for name in names)}
+    usual = max(widths, key=lambda width: sum(name.is_padded(width) for name in names))
+    odd = [name.path.name for name in names if not name.is_padded(usual)]
     if odd:
-        plain = next((name.path.name for name in names if name.is_padded(width)), names[0].path.name)
         warnings.warn(
-            f"{listed(odd)}: padded otherwise than {plain}; taken as one shot, by number: are all of it?", stacklevel=3
+            f"{listed(odd)}: padded otherwise than other frames, as if of another run; taken as frames of the same shot",
+            stacklevel=3,
         )
     return [name.path for name in names]
 
