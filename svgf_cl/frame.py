@@ -128,6 +128,15 @@ def check_field(name: str, value: Any, shape: Shape) -> None:
     kinds, wanted = ("ui", "integers (uint32)") if name == "id" else ("f", "floating point (float32)")
     if value.dtype.kind not in kinds:
         raise FrameError(name, wanted, f"dtype {value.dtype}")
+    if name == "id" and value.dtype.itemsize > 4 and isinstance(value, np.ndarray):
+        check_ids(value)
+
+
+def check_ids(value: np.ndarray) -> None:
+    """Raise `FrameError` where 32 bits cannot hold an id: two of them might become one. Negative ones stay apart."""
+    for extreme in (int(value.min(initial=0)), int(value.max(initial=0))):
+        if not -(2**31) <= extreme < 2**32:
+            raise FrameError("id", f"ids in 0..{2**32 - 1}, which fit into 32 bits", str(extreme))
 
 
 def check_array(name: str, value: Any) -> None:

@@ -60,24 +60,24 @@ def correlations(first: dict[str, Array], second: dict[str, Array]) -> Array:
 
 
 def mirrored(view: View) -> Array:
-    """Correlations as is, and with the others upside down; then which fields have any: (3, F)."""
+    """Which fields have correlations; these as is, and with the others upside down: (3, F)."""
     now = edges(view)
     here = correlations(now, now)
-    return np.array([here, correlations(now, {name: values[::-1] for name, values in now.items()}), here != 0])
+    return np.array([here != 0, here, correlations(now, {name: values[::-1] for name, values in now.items()})])
 
 
 def displaced(before: View, now: View) -> Array:
-    """The same as is, with the others of the frame before, and with the others of the frame after: (4, F)."""
+    """The same with the others of the frame before, and with the others of the frame after: (4, F)."""
     old, new = edges(before), edges(now)
     here = correlations(new, new)
-    return np.array([here, correlations(new, old), correlations(old, new), here != 0])
+    return np.array([here != 0, here, correlations(new, old), correlations(old, new)])
 
 
 def judged(sums: Array, topic: str, why: str, mistakes: tuple[tuple[str, str], ...]) -> list[Finding | Unknown]:
     """A mistake is there where a field's edges go clearly better with where it would put the others'."""
     findings: list[Finding | Unknown] = []
     alike = []
-    for name, (as_is, *others, frames) in zip(FIELDS, sums.T, strict=True):
+    for name, (frames, as_is, *others) in zip(FIELDS, sums.T, strict=True):
         here, there = max(as_is, 0) / max(frames, 1), max(*others, 0) / max(frames, 1)
         if there > CLEARLY * here + CERTAIN:
             what, cure = mistakes[int(np.argmax(others))]
@@ -85,7 +85,7 @@ def judged(sums: Array, topic: str, why: str, mistakes: tuple[tuple[str, str], .
             findings.append(Finding(name, what, measured, cure))
         elif frames and not here > CLEARLY * there + CERTAIN:
             alike.append(name)
-    if findings or (sums[-1].any() and not alike):
+    if findings or (sums[0].any() and not alike):
         return findings
     return [Unknown(topic, f"{why}: {', '.join(alike) or 'no field has edges'}")]
 
@@ -103,5 +103,5 @@ def judge_displaced(sums: Array) -> list[Finding | Unknown]:
     return judged(sums, PUNCTUAL.topic, "no edges that move by a pixel", mistakes)
 
 
-UPRIGHT = Check("G-buffer: the same way up", mirrored, judge_mirrored)
-PUNCTUAL = Check("G-buffer: of the same frame", displaced, judge_displaced, frames=2, trusts=FIELDS)
+UPRIGHT = Check("G-buffer: the same way up", mirrored, judge_mirrored, fields=FIELDS)
+PUNCTUAL = Check("G-buffer: of the same frame", displaced, judge_displaced, frames=2, trusts=FIELDS, fields=FIELDS)

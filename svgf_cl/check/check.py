@@ -27,6 +27,8 @@ class Check:
         How many frames in a row `measure` takes.
     trusts : tuple of str
         Fields that it takes for right: where one is known to be wrong it would only tell of that again.
+    fields : tuple of str
+        What it looks at one by one, as columns of what it measures; the first row says how much of each there was.
     """
 
     topic: str
@@ -35,6 +37,7 @@ class Check:
     silence: str = ""
     frames: int = 1
     trusts: tuple[str, ...] = ()
+    fields: tuple[str, ...] = ()
 
     def ask(self, views: Sequence[View]) -> Array | None:
         """What the last of some frames in a row say."""
@@ -48,3 +51,9 @@ class Check:
         if count < self.frames:
             return [Unknown(self.topic, f"it takes {self.frames} frames in a row")]
         return [Unknown(self.topic, self.silence)] if total is None else self.judge(total)
+
+    def passed(self, total: Array | None) -> str:
+        """The topic, with the fields in brackets that were there to be looked at."""
+        if not self.fields or total is None:
+            return self.topic
+        return f"{self.topic} ({', '.join(name for name, seen in zip(self.fields, total[0], strict=True) if seen)})"

@@ -16,6 +16,10 @@ EXPECTED = {
     "emission": "linear radiance of what shines itself, contained in color",
     "direct": "linear radiance, color = direct + indirect + emission",
     "indirect": "linear radiance, color = direct + indirect + emission",
+    "diffuse": "linear radiance, color = diffuse + specular + emission",
+    "specular": "linear radiance, color = diffuse + specular + emission",
+    "roughness": "perceptual roughness, 0 (mirror) to 1",
+    "hit_distance": "lengths of rays in scene units, 0 where none was shot, +inf where it left the scene",
 }
 
 
@@ -82,7 +86,7 @@ class Report:
     unknown : tuple of Unknown
         What could not be told. It is not passed.
     passed : tuple of str
-        What was looked at and is right.
+        What was looked at and is right; where that is a matter of single fields, these in brackets.
     """
 
     findings: tuple[Finding, ...]

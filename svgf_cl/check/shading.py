@@ -18,6 +18,7 @@ import numpy as np
 from svgf_cl.check.check import Check
 from svgf_cl.check.finding import Finding, Unknown, percent
 from svgf_cl.check.view import Array, View, Whole, sample
+from svgf_cl.frame import CARRIED
 
 DARK = 0.02  # albedo that is too little to tell
 # Where cells begin: of albedo, the first at 0; of the logarithm of the ratio of two.
@@ -32,6 +33,8 @@ HOLDS, FAILS, FARTHER = 0.15, 0.25, 2.5
 MOST = 0.75  # of the pairs must be in cells that a cure betters
 DARKER = 0.02  # than its emission alone, relative: what half floats leave
 SOME = 0.5  # of what shines, more than moves on in a frame
+# What color is the sum of, with emission; by how much it may be off, relative to both; in how many of the pixels not.
+PAIRS, ROUNDED, FEW = (("direct", "indirect"), ("diffuse", "specular")), 0.01, 0.01
 
 
 def srgb_decoded(values: Array) -> Array:
@@ -182,6 +185,36 @@ def judge_shining(sums: Array) -> list[Finding]:
     return [Finding("color", "darker than the emission in it", measured, f"{LINEAR}, emission included")]
 
 
+def unequal(view: View) -> Array | None:
+    """Of each of `PAIRS`, its pixels, and those in which it does not add up to color: (2, pairs)."""
+    given = view.frame.present()
+    emission = given.get("emission", 0)
+    found = np.zeros((2, len(PAIRS)))
+    for index, pair in enumerate(PAIRS):
+        whole = given["color"] if "color" in given else given["direct"] + given["indirect"] + emission
+        if pair[0] in given and pair[1] in given and ("color" in given or pair != PAIRS[0]):
+            total = given[pair[0]] + given[pair[1]] + emission
+            with np.errstate(invalid="ignore"):  # what is not finite is another matter
+                off = np.abs(total - whole) > ROUNDED * (np.abs(total) + np.abs(whole)) + 1e-6
+            found[:, index] = view.frame.depth.size, off.any(axis=-1).sum()
+    return found if found.any() else None
+
+
+def judge_parts(sums: Array) -> list[Finding]:
+    """Light that is split in two is there in whole."""
+    return [
+        Finding(
+            a,
+            f"with {b} and emission not all of color",
+            f"off by more than {200 * ROUNDED:g} % in {percent(off, pixels)}",
+            "split all light, of the same samples, in two; put what shines itself into emission",
+            "warning" if a in CARRIED else "error",
+        )
+        for (a, b), pixels, off in zip(PAIRS, *sums, strict=True)
+        if off > FEW * pixels
+    ]
+
+
 CURVE = Check(
     "color, albedo: linear",
     imbalances,
@@ -191,3 +224,11 @@ CURVE = Check(
     trusts=("color", "albedo", "normal", "depth"),
 )
 SHINING = Check("color: contains emission", shining, judge_shining, "nothing shines", trusts=("color", "emission"))
+PARTS = Check(
+    "color: the sum of its parts",
+    unequal,
+    judge_parts,
+    "no other parts were given",
+    trusts=("color", "emission"),
+    fields=tuple(map(" + ".join, PAIRS)),
+)

@@ -111,23 +111,24 @@ def judge_turns(sums: Array) -> list[Finding | Unknown]:
 
 
 def deeper(before: View, now: View) -> Array | None:
-    """Pixels found again; whose depth changes by more than history bears; how far, as a share of depth, each reading
-    of the third component is off: none, as given, negated, the previous depth itself.
+    """Pixels found again; whether there is a third component; pixels whose depth differs by more than history bears
+    from what is expected without it, and with it; how far, as a share of depth, each reading of it is off: none, as
+    given, negated, the previous depth itself.
     """
     same, there = followed(before, now)
     if not same.any():
         return None
     depth = now.depth[same]
     change = before.depth[there] / depth - 1
-    lost = np.count_nonzero(np.abs(change) > Settings().depth_threshold)
     given = np.zeros_like(depth) if now.deeper is None else now.deeper[same] / depth
-    off = [np.minimum(np.abs(reading - change), EDGE).sum() for reading in (0 * given, given, -given, given - 1)]
-    return np.array([len(depth), lost, now.deeper is not None, *off])
+    off = np.abs(np.stack([0 * given, given, -given, given - 1]) - change)
+    lost = np.count_nonzero(off[:2] > Settings().depth_threshold, axis=-1)
+    return np.array([len(depth), now.deeper is not None, *lost, *np.minimum(off, EDGE).sum(axis=-1)])
 
 
 def judge_deeper(sums: Array) -> list[Finding | Unknown]:
     """The right reading is nearest to what became of depth."""
-    found, lost, there, none, given, negated, absolute = sums
+    found, there, lost, refused, none, given, negated, absolute = sums
     if not there:
         if lost < 0.5 * found:
             return [Unknown(DEEPER.topic, "none was given, and depth changes little")]
@@ -144,6 +145,12 @@ def judge_deeper(sums: Array) -> list[Finding | Unknown]:
             f"it misses the depth before by {100 * given / found:.2g} %, {100 * best / found:.2g} % with the cure"
         )
         return [Finding("motion", what, measured, cure)]
+    if refused > 0.5 * found and none < BETTER * given:
+        measured = f"with it {percent(refused, found)} lose their history, without it {percent(lost, found)}"
+        cure = (
+            "give previous minus current depth, or two components: in a vector pass of four the third is another motion"
+        )
+        return [Finding("motion", "third component is not the change of depth", measured, cure)]
     return [] if given < BETTER * min(none, negated) else [Unknown(DEEPER.topic, "no depth changes noticeably")]
 
 

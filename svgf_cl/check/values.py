@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from svgf_cl.check.check import Check
-from svgf_cl.check.finding import EXPECTED, Finding, Unknown, percent
-from svgf_cl.check.view import FAR, Array, View, pixel_centers, typical
+from svgf_cl.check.finding import Finding, Unknown, percent
+from svgf_cl.check.view import FAR, Array, View, has_normal, in_range, pixel_centers, typical
+from svgf_cl.frame import CARRIED, CHANNELS
 
-FIELDS = tuple(name for name in EXPECTED if name != "id")
-COLORS = ("color", "albedo", "emission", "direct", "indirect")
+FIELDS = tuple(name for name in CHANNELS if name != "id")
+POSITIVE = tuple(name for name in FIELDS if name not in ("normal", "depth", "motion"))
+# What is infinite in its place: the depth of a miss, the length of a ray that left the scene.
+ENDLESS = ("depth", "hit_distance")
 CONSTANT = ("color", "normal", "depth", "albedo", "id")
 OPTIONAL = ("albedo", "id")
 # Pixels enough to tell a rule of the renderer from its accident.
@@ -18,55 +22,68 @@ UNIT = 0.02  # of a length: what half floats and interpolation leave
 
 
 def not_finite(view: View) -> Array:
-    """All pixels; those of each of `FIELDS` that hold NaN or infinity."""
-    counts: dict[str, int] = dict.fromkeys(FIELDS, 0)
-    for name in FIELDS & view.frame.present().keys():
-        values = getattr(view.frame, name).reshape(view.frame.depth.size, -1)
-        bad = np.isnan(values) | (values == -np.inf) if name == "depth" else ~np.isfinite(values)
-        counts[name] = int(np.count_nonzero(bad.any(axis=-1)))
-    return np.array([view.frame.depth.size, *counts.values()], np.float64)
+    """Of each of `FIELDS`, its pixels, and those that hold NaN or infinity: (2, F)."""
+    found = np.zeros((2, len(FIELDS)))
+    for index, name in enumerate(FIELDS):
+        values = getattr(view.frame, name)
+        if values is not None:
+            bad = np.isnan(values) | (values == -np.inf) if name in ENDLESS else ~np.isfinite(values)
+            found[:, index] = view.frame.depth.size, np.count_nonzero(any_channel(bad))
+    return found
+
+
+def any_channel(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Whether it holds in any channel of a pixel: (H, W) from (H, W) or (H, W, C)."""
+    return np.asarray(np.atleast_3d(mask).any(axis=-1))
 
 
 def judge_finite(sums: Array) -> list[Finding]:
-    """Nothing may be infinite but the depth of a miss."""
+    """Nothing may be infinite but what never ends."""
     cure = "the pixels are dropped; look for divisions by 0 and paths of probability 0"
     return [
         Finding(
-            name, "NaN or infinity", percent(count, sums[0]), cure, "error" if count > 0.01 * sums[0] else "warning"
+            name,
+            "NaN or infinity",
+            percent(count, pixels),
+            cure,
+            "error" if count > 0.01 * pixels and name not in CARRIED else "warning",
         )
-        for name, count in zip(FIELDS, sums[1:], strict=True)
+        for name, pixels, count in zip(FIELDS, *sums, strict=True)
         if count
     ]
 
 
 def negative(view: View) -> Array:
-    """All pixels; those of each of `COLORS` with a clearly negative channel."""
-    counts: dict[str, int] = dict.fromkeys(COLORS, 0)
-    for name in COLORS & view.frame.present().keys():
-        values = np.nan_to_num(getattr(view.frame, name))
-        counts[name] = int((values < -1e-3 * np.abs(values).mean(dtype=np.float64)).any(axis=-1).sum())
-    return np.array([view.frame.depth.size, *counts.values()], np.float64)
+    """Of each of `POSITIVE`, its pixels, and those with a clearly negative channel: (2, F)."""
+    found = np.zeros((2, len(POSITIVE)))
+    for index, name in enumerate(POSITIVE):
+        if getattr(view.frame, name) is not None:
+            values = np.nan_to_num(getattr(view.frame, name), posinf=0, neginf=0)
+            below = values < -1e-3 * np.abs(values).mean(dtype=np.float64)
+            found[:, index] = view.frame.depth.size, np.count_nonzero(any_channel(below))
+    return found
 
 
 def judge_negative(sums: Array) -> list[Finding]:
-    """Light and reflectance are never below 0."""
+    """Light, reflectance, roughness and lengths are never below 0."""
     cure = "hand over what was sampled, before pixel filters with negative lobes and conversions of colour"
     return [
-        Finding(name, "negative", percent(count, sums[0]), cure)
-        for name, count in zip(COLORS, sums[1:], strict=True)
+        Finding(name, "negative", percent(count, pixels), cure, "warning" if name in CARRIED else "error")
+        for name, pixels, count in zip(POSITIVE, *sums, strict=True)
         if count
     ]
 
 
 def constant(view: View) -> Array | None:
-    """Frames; those in which each of `CONSTANT` is one value wherever something was hit."""
+    """Of each of `CONSTANT`, the frames that have it, and those in which it is one value wherever something was hit."""
     if np.count_nonzero(view.hit) < 2:
         return None
     inside = {name: values[view.hit] for name in CONSTANT if (values := getattr(view, name)) is not None}
     same = {name: bool((values == values[0]).all()) for name, values in inside.items()}
     if same["normal"] and on_a_plane(view):  # a picture of a single wall
         same["normal"] = same["depth"] = False
-    return np.array([True, *(same.get(name, False) for name in CONSTANT)], np.float64)
+    there = [getattr(view.frame, name) is not None for name in CONSTANT]
+    return np.array([there, [same.get(name, False) for name in CONSTANT]], np.float64)
 
 
 def on_a_plane(view: View) -> bool:
@@ -83,14 +100,14 @@ def judge_constant(sums: Array) -> list[Finding]:
         Finding(
             name,
             "one value everywhere",
-            f"in {count:g} of {sums[0]:g} frames",
+            f"in {count:g} of {sums[0].max():g} frames",
             "leave it out, or hand over what each pixel shows"
             if name in OPTIONAL
             else "hand over what each pixel shows",
             "warning" if name in OPTIONAL else "error",
         )
-        for name, count in zip(CONSTANT, sums[1:], strict=True)
-        if count > 0.5 * sums[0]
+        for name, count in zip(CONSTANT, sums[1], strict=True)
+        if count > 0.5 * sums[0].max()
     ]
 
 
@@ -120,12 +137,14 @@ def judge_lengths(sums: Array) -> list[Finding]:
 
 
 def misses(view: View) -> Array:
-    """Pixels; of depth below 0; of depth 0; of a finite depth that stands for a miss."""
-    depth = view.frame.depth
-    usable = np.isfinite(depth) & (depth > 0)
-    unseen = ~view.frame.normal.any(axis=-1) & (depth == depth[usable].max(initial=0))
-    number = usable & (unseen | (depth > FAR * typical(depth[usable])))
-    return np.array([depth.size, *map(np.count_nonzero, (depth < 0, depth == 0, number))], np.float64)
+    """Pixels; of those with a normal: of depth below 0; of depth 0; of a finite depth that must stand for a miss.
+
+    Without a normal, the denoiser takes all these for misses.
+    """
+    depth, seen = view.frame.depth, has_normal(view.frame.normal)
+    hit = seen & in_range(depth)
+    number = hit & (depth > FAR * typical(depth[hit]))
+    return np.array([depth.size, *map(np.count_nonzero, (seen & (depth < 0), seen & (depth == 0), number))], np.float64)
 
 
 def judge_misses(sums: Array) -> list[Finding]:
@@ -143,6 +162,23 @@ def judge_misses(sums: Array) -> list[Finding]:
     ]
 
 
+def hits(view: View) -> Array:
+    """Pixels where the denoiser sees a surface, and those that have a normal."""
+    seen = has_normal(view.frame.normal)
+    return np.array([np.count_nonzero(seen & in_range(view.frame.depth)), np.count_nonzero(seen)], np.float64)
+
+
+def judge_hits(sums: Array) -> list[Finding | Unknown]:
+    """Where nothing is hit, nothing is filtered."""
+    hit, normals = sums
+    if hit:
+        return []
+    if not normals:
+        return [Unknown(SEEN.topic, "nothing was hit anywhere, so pictures come out as they are")]
+    measured = f"no depth is usable in any of {normals:g} pixels with a normal"
+    return [Finding("depth", "empty everywhere", measured, "hand over the pass that holds the distance")]
+
+
 def above_one(view: View) -> Array | None:
     """Pixels, and those whose albedo is above 1."""
     if view.albedo is None:
@@ -156,6 +192,20 @@ def judge_albedo(sums: Array) -> list[Finding]:
         return []
     cure = "give lamps and sky an albedo of 1 and put what they shine into emission; divide 8-bit albedo by 255"
     return [Finding("albedo", "above 1, as if it held emitted light", percent(sums[1], sums[0]), cure)]
+
+
+def beyond_rough(view: View) -> Array | None:
+    """Pixels, and those whose roughness is above 1."""
+    roughness = view.frame.roughness
+    return None if roughness is None else np.array([roughness.size, np.count_nonzero(roughness > 1.001)], np.float64)
+
+
+def judge_roughness(sums: Array) -> list[Finding]:
+    """No surface is rougher than 1."""
+    if sums[1] <= SOME * sums[0]:
+        return []
+    cure = "divide 8-bit roughness by 255; the exponent of a lobe is no roughness"
+    return [Finding("roughness", "above 1", percent(sums[1], sums[0]), cure, "warning")]
 
 
 def at_one(view: View) -> Array:
@@ -175,10 +225,12 @@ def judge_range(sums: Array) -> list[Finding | Unknown]:
     return [Finding("color", "clipped to 0..1", measured, "store float radiance, before exposure and view transform")]
 
 
-FINITE = Check("every field: finite", not_finite, judge_finite)
-NEGATIVE = Check("colours: not negative", negative, judge_negative)
-FILLED = Check("every field: not one value everywhere", constant, judge_constant, "nothing was hit")
+FINITE = Check("every field: finite", not_finite, judge_finite, fields=FIELDS)
+NEGATIVE = Check("light, reflectance, lengths: not negative", negative, judge_negative, fields=POSITIVE)
+FILLED = Check("surfaces: not one value everywhere", constant, judge_constant, "nothing was hit", fields=CONSTANT)
 LENGTH = Check("normal: unit vectors", lengths, judge_lengths, "nothing was hit", trusts=("normal", "depth"))
-MISSES = Check("depth: above 0, +inf where nothing was hit", misses, judge_misses)
+MISSES = Check("depth: in range where there is a normal", misses, judge_misses)
+SEEN = Check("depth: not empty", hits, judge_hits, trusts=("depth",))
 ALBEDO = Check("albedo: 0 to 1", above_one, judge_albedo, "no albedo was given")
+ROUGHNESS = Check("roughness: 0 to 1", beyond_rough, judge_roughness, "no roughness was given")
 RANGE = Check("color: not clipped", at_one, judge_range, trusts=("color",))

@@ -16,7 +16,9 @@ Whole = NDArray[np.int64]
 
 # Rows that suffice. Of a higher frame every second, third... row and column is looked at: those make a frame too.
 ENOUGH_ROWS = 400
-# Depth beyond so many times the median stands for "nothing hit", whatever it should.
+# Where the denoiser sees a surface: between these depths, where the normal is at least so long.
+DEPTH_RANGE, SHORTEST_NORMAL = (1e-20, 1e20), 1e-6
+# Depth beyond so many times the median was meant to say that nothing was hit, whatever the normal says.
 FAR = 1e4
 
 
@@ -76,9 +78,10 @@ class View:
         some = {name: value[(step - 1) // 2 :: step, (step - 1) // 2 :: step] for name, value in given.items()}
         finite = {name: np.nan_to_num(value.astype(np.float64), posinf=0, neginf=0) for name, value in some.items()}
         parts = [finite[name] for name in ("direct", "indirect", "emission") if name in finite]
-        depth, motion, emission = np.maximum(finite["depth"], 0), finite["motion"], finite.get("emission")
-        depth[depth > FAR * typical(depth)] = 0
-        hit = (depth > 0) & (np.abs(finite["normal"]).max(axis=-1) > 1e-6)
+        depth, motion, emission = finite["depth"], finite["motion"], finite.get("emission")
+        hit = is_hit(depth, finite["normal"])
+        depth[~in_range(depth) | (depth > FAR * typical(depth[hit]))] = 0
+        hit &= depth > 0
         return cls(
             frame=Frame(**given),
             step=step,
@@ -99,6 +102,23 @@ class View:
 def on_host(value: Any) -> NDArray[Any]:
     """A numpy.ndarray of it; a pyopencl.array.Array is copied from its device."""
     return np.asarray(value.get() if hasattr(value, "get") else value)
+
+
+def in_range(depth: NDArray[Any]) -> Mask:
+    """Whether the denoiser takes a depth for that of a surface."""
+    within: Mask = (depth > DEPTH_RANGE[0]) & (depth < DEPTH_RANGE[1])
+    return within
+
+
+def is_hit(depth: NDArray[Any], normal: NDArray[Any]) -> Mask:
+    """Whether the denoiser sees a surface, by its depth (h, w) and finite normal (h, w, 3)."""
+    return in_range(depth) & has_normal(normal)
+
+
+def has_normal(normal: NDArray[Any]) -> Mask:
+    """Whether there is a normal (h, w, 3) at all, NaN being none."""
+    long: Mask = np.abs(normal).max(axis=-1) > SHORTEST_NORMAL
+    return long
 
 
 def shifted(values: NDArray[Any], dx: int, dy: int) -> NDArray[Any]:

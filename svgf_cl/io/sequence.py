@@ -164,7 +164,7 @@ def in_order(files: Sequence[Path]) -> list[Path]:
     odd = [name.path.name for name in names if not name.is_padded(usual)]
     if odd:
         warnings.warn(
-            f"{listed(odd)}: padded otherwise than other frames, as if of another run; taken as frames of the same shot",
+            f"{listed(odd)}: padded otherwise than other frames, as if of another run; taken as of the same shot",
             stacklevel=3,
         )
     return [name.path for name in names]

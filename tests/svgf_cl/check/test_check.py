@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -12,9 +13,10 @@ import pytest
 from svgf_cl import Frame, FrameError, check_frame, check_sequence
 from svgf_cl.check import CHECKS, Inspection, camera, depth, motion, surfaces, values
 from svgf_cl.check.check import Check
-from svgf_cl.check.finding import Finding, Unknown
+from svgf_cl.check.finding import EXPECTED, Finding, Unknown
+from svgf_cl.frame import CARRIED, CHANNELS
 from svgf_cl.io.synthetic import room_frames
-from tests.frames import noise, wall
+from tests.frames import TINY, bumpy, noise, only, wall
 
 SHAPE = (180, 320)
 
@@ -26,7 +28,7 @@ def room() -> list[Frame]:
 
 def test_each_check_is_a_finding_or_unknown_or_passed(room: list[Frame]) -> None:
     report = check_sequence(room)
-    topics = [*{unknown.topic for unknown in report.unknown}, *report.passed]
+    topics = [*{unknown.topic for unknown in report.unknown}, *(passed.split(" (")[0] for passed in report.passed)]
     assert sorted(topics) == sorted(check.topic for check in CHECKS)
 
 
@@ -103,6 +105,35 @@ def test_frames_without_optional_fields_are_checked(room: list[Frame]) -> None:
     assert not report.findings
     assert {surfaces.NAMES.topic, values.ALBEDO.topic} <= {unknown.topic for unknown in report.unknown}
     assert camera.JITTER.topic in report.passed
+
+
+@pytest.mark.parametrize("given", [(), ("albedo",), ("id", "roughness"), ("diffuse", "specular"), CARRIED])
+def test_what_was_not_there_has_not_passed(given: tuple[str, ...]) -> None:
+    frame = bumpy(np.random.default_rng(1))
+    report = check_frame(only(frame, ("color", *given)))
+    listed = {name for passed in report.passed for name in re.findall(r"\w+", passed.partition(" (")[2])}
+    assert {"color", "normal", "depth", "motion", *given} - {"id"} <= listed
+    assert listed <= {"color", "normal", "depth", "motion", *given}
+
+
+@pytest.mark.parametrize("field", [name for name in CHANNELS if name != "id"])
+def test_no_field_passes_unseen(field: str) -> None:
+    """Nothing but NaN in it is noticed, whichever field it is."""
+    frame = bumpy(np.random.default_rng(1))
+    broken = replace(frame, **{field: np.full_like(getattr(frame, field), np.nan)})
+    assert field in {finding.field for finding in check_frame(broken).findings}
+
+
+def test_every_field_is_explained() -> None:
+    assert EXPECTED.keys() == CHANNELS.keys()
+
+
+@pytest.mark.parametrize(("kind", "great"), [(np.int64, 2**32), (np.uint64, 2**64 - 1), (np.int64, -(2**31) - 1)])
+def test_an_id_that_32_bits_cannot_hold_is_refused(kind: type, great: int) -> None:
+    ids = np.ones(TINY, kind)
+    ids[3, 3] = great
+    with pytest.raises(FrameError, match=rf"Frame\.id: expected ids in 0\.\.4294967295, .* got {great}"):
+        check_frame(replace(wall(TINY), id=ids))
 
 
 def test_parts_stand_in_for_color() -> None:

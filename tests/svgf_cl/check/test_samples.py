@@ -13,6 +13,7 @@ from svgf_cl import Frame, check_sequence
 from svgf_cl.io.exr import read_channels
 
 SAMPLES = Path(__file__).parents[4] / "shared" / "samples"
+PATHS = sorted((SAMPLES / "blender" / "noisy").glob("*.exr"))
 
 pytestmark = pytest.mark.skipif(not SAMPLES.exists(), reason=f"{SAMPLES} is not here")
 
@@ -66,7 +67,7 @@ def mitsuba(path: Path, number: int, cameras: dict[int, dict]) -> Frame:
 
 @pytest.fixture(scope="module")
 def cycles() -> list[Frame]:
-    return [blender(path) for path in sorted((SAMPLES / "blender" / "noisy").glob("*.exr"))]
+    return [blender(path) for path in PATHS]
 
 
 def test_blender_raises_no_alarm(cycles: list[Frame]) -> None:
@@ -78,12 +79,23 @@ def test_blender_s_own_sign_of_motion_is_found(cycles: list[Frame]) -> None:
     assert [(found.field, found.what) for found in check_sequence(raw).findings] == [("motion", "y points up")]
 
 
-def test_blender_s_depth_of_what_was_missed_is_found(cycles: list[Frame]) -> None:
+@pytest.mark.parametrize("number", [1e10, 0.0, 3e38])
+def test_a_number_for_depth_where_there_is_no_normal_is_a_miss(cycles: list[Frame], number: float) -> None:
+    """Blender writes 1e10, and the denoiser takes it as one."""
     raw = [
-        replace(frame, depth=np.where(np.isinf(frame.depth), 1e10, frame.depth).astype(np.float32)) for frame in cycles
+        replace(frame, depth=np.where(np.isinf(frame.depth), number, frame.depth).astype(np.float32))
+        for frame in cycles
+    ]
+    assert check_sequence(raw) == check_sequence(cycles)
+
+
+def test_the_next_frame_s_motion_in_the_third_component_is_found(cycles: list[Frame]) -> None:
+    vectors = [stacked(read_channels(path), "Main Layer.Vector", "XYZ") for path in PATHS]
+    raw = [
+        replace(frame, motion=vector * np.float32([1, -1, 1])) for frame, vector in zip(cycles, vectors, strict=True)
     ]
     found = [(finding.field, finding.what) for finding in check_sequence(raw).findings]
-    assert found == [("depth", "a finite number where nothing was hit")]
+    assert found == [("motion", "third component is not the change of depth")]
 
 
 def test_blender_out_of_focus_raises_no_alarm() -> None:
