@@ -102,10 +102,10 @@ class Inspection:
     def add(self, frame: Frame) -> None:
         """Look at the next frame; raise `FrameError` as `check_sequence`."""
         frame.check(self._views[-1].frame.shape if self._views else frame.shape)
-        self._views = [*self._views[-1:], View.of(frame)]
         self._run += 1
         self._longest = max(self._longest, self._run)
         with np.errstate(all="ignore"):  # frames may hold anything
+            self._views = [*self._views[-1:], View.of(frame)]
             for check in CHECKS:
                 told = check.ask(self._views)
                 if told is not None:

@@ -103,7 +103,7 @@ def features(view: View) -> Array:
     """What stays on surfaces, (h, w, C): normal, albedo, steps of depth; blurred, so as to be smooth between pixels."""
     log_depth = -np.log(np.where(view.hit, view.nearness, np.max(view.nearness, initial=1e-30)))
     steps = np.clip(log_depth - blurred(blurred(log_depth)), -1, 1)
-    fields = [view.normal, steps[..., None]]
+    fields = [np.clip(view.normal, -1, 1), steps[..., None]]
     if view.albedo is not None:
         fields.append(np.clip(view.albedo, 0, 1))
     return blurred(blurred(np.concatenate(fields, axis=-1)))
