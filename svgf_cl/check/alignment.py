@@ -28,6 +28,8 @@ ENOUGH = 2e-3  # share of pixels on edges
 @lru_cache(maxsize=2)  # of a frame and the one before it
 def edges(view: View) -> dict[str, Array]:
     """Where each field has edges, (h, w): 0 or 1."""
+    if view.is_small:
+        return {}
     found: dict[str, NDArray[np.generic]] = {
         "depth": bend(view.nearness) > NEARNESS * view.nearness,
         "normal": bend(view.normal) > NORMAL,
@@ -87,7 +89,7 @@ def judged(sums: Array, topic: str, why: str, mistakes: tuple[tuple[str, str], .
             alike.append(name)
     if findings or (sums[0].any() and not alike):
         return findings
-    return [Unknown(topic, f"{why}: {', '.join(alike) or 'no field has edges'}")]
+    return [Unknown(topic, f"{why}: {', '.join(alike) or 'no field has enough edges'}")]
 
 
 def judge_mirrored(sums: Array) -> list[Finding | Unknown]:

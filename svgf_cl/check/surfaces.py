@@ -49,6 +49,8 @@ def names(before: View, now: View) -> Array | None:
     """Pixels found again; of the same id there; of the id that most of their object has there."""
     if now.id is None or before.id is None:
         return None
+    if now.is_small:
+        return np.zeros(3)
     same, there = followed(before, now)
     ids, past = now.id[same], before.id[there]
     pairs, counts = np.unique(ids << 32 | past, return_counts=True)

@@ -16,6 +16,8 @@ Whole = NDArray[np.int64]
 
 # Rows that suffice. Of a higher frame every second, third... row and column is looked at: those make a frame too.
 ENOUGH_ROWS = 400
+# Pixels of a picture; in fewer, much lies on edges, and those of one field fall on those of others by chance.
+FEW = 100 * 100
 # Where the denoiser sees a surface: between these depths, where the normal is at least so long.
 DEPTH_RANGE, SHORTEST_NORMAL = (1e-20, 1e20), 1e-6
 # Depth beyond so many times the median was meant to say that nothing was hit, whatever the normal says.
@@ -69,6 +71,11 @@ class View:
         """(height, width) of what is looked at."""
         height, width = self.depth.shape
         return height, width
+
+    @property
+    def is_small(self) -> bool:
+        """Whether there are so few pixels that chance tells as much as they do."""
+        return self.depth.size < FEW
 
     @classmethod
     def of(cls, frame: Frame) -> View:

@@ -10,12 +10,13 @@ import typer
 from svgf_cl.check import Inspection
 from svgf_cl.cli.console import show, tracked
 from svgf_cl.cli.options import AllowGaps, Frames
+from svgf_cl.cli.remarks import reading
 from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Frame
 from svgf_cl.io.atomic import make_folder
 from svgf_cl.io.display import write_image
 from svgf_cl.io.sequence import after_gaps, find_frames
-from svgf_cl.io.shot import read_sequence
+from svgf_cl.io.shot import read_shot, shared_window
 
 
 def check(
@@ -42,7 +43,10 @@ def check(
     sources = find_frames(frames, allow_gaps=allow_gaps)
     inspection, cuts = Inspection(), after_gaps(sources)
     last: list[Frame] = []
-    for path, frame in zip(sources, tracked(read_sequence(sources), len(sources), "checking"), strict=True):
+    shot = tracked(read_shot(sources, shared_window(sources)), len(sources), "checking")
+    for path, (image, frame) in zip(sources, shot, strict=True):
+        if not last:
+            print(reading(image.planes))
         if path in cuts:
             inspection.cut()
         inspection.add(frame)

@@ -13,6 +13,7 @@ import typer
 
 from svgf_cl.cli.console import kept_of, show_times, tracked
 from svgf_cl.cli.options import AllowGaps, Exposure, FilterName, Frames, Output, SettingTexts, parse_settings
+from svgf_cl.cli.remarks import FirstFrames, reading, require_surfaces
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.errors import FileError
 from svgf_cl.filters import Settings
@@ -36,13 +37,15 @@ def denoise(
     exposure: Exposure = 0.0,
     plain: Annotated[bool, typer.Option("--plain", help="Write R G B alone, no other channel.")] = False,
     allow_gaps: AllowGaps = False,
+    check: Annotated[bool, typer.Option(help="Check the first frames and warn of what is wrong with them.")] = True,
 ) -> None:
     """Denoise a sequence of EXR frames.
 
     Writes one EXR a frame under the frame's own name. R, G and B are denoised (linear HDR, 32-bit floats); all else in
     the frame's file passes through: other channels, windows, attributes. The channels read are those that
     `svgf-cl render` writes: R G B, normal.X Y Z, depth.Z, motion.X Y [Z], and where there are any albedo.R G B, id,
-    emission.R G B, direct.R G B, indirect.R G B. All frames count as one shot: each uses the ones before it.
+    emission.R G B, direct.R G B, indirect.R G B. One line says which of them were found. All frames count as one shot:
+    each uses the ones before it.
 
     If it is interrupted, run the same command again. All frames are then filtered again, because each picture depends
     on all frames before it, but pictures that are there already and are the same are kept.
@@ -59,7 +62,7 @@ def denoise(
     shown = [target.with_suffix(".png") for target in targets if png]
     check_leftovers(output, [*targets, *shown])
     profiles, kept = [], 0
-    results = tracked(denoised(sources, settings), len(sources), "denoising")
+    results = tracked(denoised(sources, settings, check=check), len(sources), "denoising")
     for target, (source, picture, profile) in zip(targets, results, strict=True):
         image = picture_file(picture, source, plain=plain)
         if holds(target, image):
@@ -85,12 +88,18 @@ def target_paths(sources: Sequence[Path], folder: Path) -> list[Path]:
 
 
 def denoised(
-    sources: Sequence[Path], settings: Filter
+    sources: Sequence[Path], settings: Filter, *, check: bool
 ) -> Iterator[tuple[Image, npt.NDArray[np.float32], dict[str, float]]]:
     """Read and denoise one frame after the other: its file, its picture, and milliseconds per pass."""
-    window, cuts, denoiser = shared_window(sources), after_gaps(sources), None
+    window, cuts = shared_window(sources), after_gaps(sources)
+    first = FirstFrames(len(sources) if check else 0)
+    denoiser = None
     for path, (image, frame) in zip(sources, read_shot(sources, window), strict=True):
-        denoiser = denoiser or Denoiser(frame.shape, settings=settings)
+        require_surfaces(path, frame)
+        if denoiser is None:
+            print(reading(image.planes))
+            denoiser = Denoiser(frame.shape, settings=settings)
         if path in cuts:
             denoiser.reset()
+        first.look(frame, after_cut=path in cuts)
         yield image, placed(denoiser.denoise(frame), window, image.windows.data, 0.0), denoiser.profile()

@@ -20,8 +20,9 @@ from svgf_cl.io.exr import (
     write_channels,
 )
 from svgf_cl.io.image import Plane
+from svgf_cl.io.look_alikes import advice
 
-# Channels of each field, in the order of its components; a third motion component may be missing.
+# Channels of each field, in the order of its components; `OPTIONAL` may be missing.
 CHANNEL_NAMES: dict[str, tuple[str, ...]] = {
     "color": ("R", "G", "B"),
     **{
@@ -34,6 +35,7 @@ CHANNEL_NAMES: dict[str, tuple[str, ...]] = {
     "roughness": ("roughness",),
     "hit_distance": ("hit_distance.diffuse", "hit_distance.specular"),
 }
+OPTIONAL = "motion.Z"
 MAX_ID = 2**24  # of ids in a channel of floats
 MADE_FROM = "svgf_cl:made_from"  # the attribute that tells what a frame was made from
 
@@ -97,14 +99,14 @@ def read_frame(path: Path) -> Frame:
 def frame_of(path: Path, planes: Mapping[str, Plane]) -> Frame:
     """Put a frame together from the channels of file `path`; errors as of `read_frame`."""
     values = {field: value for field in CHANNEL_NAMES if (value := field_of(path, planes, field)) is not None}
-    for field in REQUIRED:
-        if field not in values:
-            raise absent(path, CHANNEL_NAMES[field], planes)
+    missing = [field for field in REQUIRED if field not in values]
+    if missing:
+        raise absent(path, missing, planes)
     frame = Frame(**values)
     try:
         frame.check_presence()
     except FrameError as error:
-        raise FileError(f"{path}: {error}; channels found: {' '.join(planes)}") from error
+        raise FileError(f"{path}: {error}; channels found: {' '.join(planes)}{hint(['color'], planes)}") from error
     return frame
 
 
@@ -114,9 +116,8 @@ def field_of(path: Path, planes: Mapping[str, Plane], field: str) -> npt.NDArray
     found = [planes[name] for name in names if name in planes]
     if not found:
         return None
-    needed = names[:2] if field == "motion" else names
-    if not planes.keys() >= set(needed):
-        raise absent(path, needed, planes)
+    if not planes.keys() >= set(needed(field)):
+        raise absent(path, [field], planes)
     if field == "id":
         return whole_numbers(path, found[0])
     values = [np.asarray(plane, np.float32) for plane in found]
@@ -133,6 +134,18 @@ def whole_numbers(path: Path, plane: Plane) -> npt.NDArray[np.uint32]:
     return plane.astype(np.uint32)
 
 
-def absent(path: Path, names: Sequence[str], planes: Mapping[str, Plane]) -> FileError:
-    """Make the error for channels that are not there; it lists those that are."""
-    return FileError(f"{path}: expected channels {' '.join(names)}, found {' '.join(planes)}")
+def needed(field: str) -> tuple[str, ...]:
+    """The channels without which a field is not there."""
+    return tuple(name for name in CHANNEL_NAMES[field] if name != OPTIONAL)
+
+
+def absent(path: Path, fields: Sequence[str], planes: Mapping[str, Plane]) -> FileError:
+    """Make the error for fields whose channels are not all there; it lists those that are, and what they may be."""
+    names = [name for field in fields for name in needed(field)]
+    return FileError(f"{path}: expected channels {' '.join(names)}, found {' '.join(planes)}{hint(fields, planes)}")
+
+
+def hint(fields: Sequence[str], planes: Mapping[str, Plane]) -> str:
+    """What to add to an error for fields that are not there."""
+    text = advice(planes, {field: needed(field) for field in fields})
+    return text and f"; {text}"

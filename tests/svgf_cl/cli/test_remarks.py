@@ -1,0 +1,156 @@
+"""What `denoise` says of frames: the fields it reads, and what is wrong in the first ones."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from svgf_cl import Frame
+from svgf_cl.cli import remarks
+from svgf_cl.cli.remarks import reading
+from svgf_cl.io.exr import read_channels, write_channels
+from svgf_cl.io.frames import frame_path, write_frame
+from svgf_cl.io.synthetic import room_frames
+from tests.command_line import run
+
+SHAPE = (90, 160)
+PLAIN = ["R", "G", "B", "normal.X", "normal.Y", "normal.Z", "depth.Z", "motion.X", "motion.Y"]
+FULL = [*PLAIN, "motion.Z", "id", *(f"{field}.{c}" for field in ("albedo", "emission") for c in "RGB")]
+
+
+@pytest.fixture(scope="module")
+def room() -> list[Frame]:
+    return list(room_frames(SHAPE, 4))
+
+
+def written(folder: Path, frames: list[Frame]) -> Path:
+    folder.mkdir(exist_ok=True)
+    for number, frame in enumerate(frames):
+        write_frame(frame_path(folder, number), frame)
+    return folder
+
+
+def said(capsys: pytest.CaptureFixture[str], *argv: str | Path) -> tuple[str, str]:
+    """What a command that ends well writes to stdout and stderr."""
+    capsys.readouterr()
+    assert run("denoise", *argv) == 0
+    captured = capsys.readouterr()
+    return captured.out, captured.err
+
+
+def changed(room: list[Frame], field: str, change) -> list[Frame]:
+    return [replace(frame, **{field: change(getattr(frame, field)).astype(np.float32)}) for frame in room]
+
+
+def test_one_line_says_what_is_read_and_what_that_costs() -> None:
+    line = reading(PLAIN)
+    assert line.startswith(
+        "read: color (R G B), normal (normal.X Y Z), motion (motion.X Y), depth (depth.Z); missing: "
+    )
+    for field in ("albedo", "id", "emission", "direct and indirect", "motion.Z"):
+        assert f"{field} ({remarks.COSTS[field]})" in line
+    assert "\n" not in line
+    assert "ignored" not in line
+
+
+def test_what_is_there_is_not_missing() -> None:
+    assert "albedo (albedo.R G B)" in reading(FULL)
+    assert "missing: direct and indirect (they are filtered as one)" in reading(FULL)
+    every = [*FULL, "roughness", *(f"{field}.{c}" for field in ("direct", "indirect") for c in "RGB")]
+    assert "missing" not in reading(every)
+    assert reading(every).endswith("; not needed: color, roughness")
+
+
+def test_what_is_ignored_is_named_only_where_its_field_is_missing() -> None:
+    extra = ["A", "Z", "P.X", "P.Y", "P.Z", "Albedo.R", "Albedo.G", "Albedo.B"]
+    line = reading([*PLAIN, *extra])
+    assert line.endswith("; ignored: Albedo.R G B looks like albedo; rename it to albedo.R G B")
+    assert "ignored" not in reading([*FULL, *extra])
+
+
+def test_both_commands_say_it(tmp_path: Path, room: list[Frame], capsys: pytest.CaptureFixture[str]) -> None:
+    folder = written(tmp_path / "in", room)
+    out, err = said(capsys, folder, "-o", tmp_path / "out")
+    assert out.count("read: ") == 1
+    assert not err
+    assert run("check", folder) == 0
+    assert capsys.readouterr().out.startswith("read: color (R G B), ")
+
+
+@pytest.mark.parametrize(("field", "other"), [("depth.Z", "Z"), ("normal.X", "N.X"), ("motion.X", "Vector.X")])
+def test_an_error_names_what_a_field_may_be(tmp_path: Path, room: list[Frame], field: str, other: str, refused) -> None:
+    folder = written(tmp_path, room[:1])
+    old, new = field.partition(".")[0], other.partition(".")[0]
+    planes = {name.replace(f"{old}.Z", "Z") if other == "Z" else name.replace(old, new): plane
+              for name, plane in read_channels(folder / "frame.0000.exr").items()}  # fmt: skip
+    write_channels(folder / "frame.0000.exr", planes)
+    refused(f"{other}", "denoise", folder, "-o", tmp_path / "out")
+    refused(f"like {old}; rename it to {old}.", "denoise", folder, "-o", tmp_path / "out")
+
+
+def test_a_mistake_is_a_warning_and_no_check_keeps_quiet(
+    tmp_path: Path, room: list[Frame], capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = written(tmp_path / "in", changed(room, "motion", lambda motion: motion * [-1, -1, 1]))
+    _, err = said(capsys, folder, "-o", tmp_path / "out")
+    assert "svgf-cl: warning: motion: points the other way; negate it\n" in err
+    assert "--no-check leaves it out" in err
+    assert "Traceback" not in err
+    assert said(capsys, folder, "-o", tmp_path / "out", "--no-check")[1] == ""
+
+
+def test_only_first_frames_are_checked(
+    tmp_path: Path, room: list[Frame], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    frames = [*room[:2], *changed(room[2:], "albedo", lambda albedo: 255 * albedo)]
+    folder = written(tmp_path / "in", frames)
+    assert "albedo: above 1" in said(capsys, folder, "-o", tmp_path / "out")[1]
+    monkeypatch.setattr(remarks, "FIRST", 2)
+    assert said(capsys, folder, "-o", tmp_path / "out")[1] == ""
+
+
+def test_a_gap_is_no_mistake(tmp_path: Path, room: list[Frame], capsys: pytest.CaptureFixture[str]) -> None:
+    folder = written(tmp_path / "in", room)
+    (folder / "frame.0001.exr").unlink()
+    assert said(capsys, folder, "-o", tmp_path / "out", "--allow-gaps")[1] == ""
+
+
+@pytest.mark.parametrize("beyond", [0.0, 1e10, np.inf])
+def test_negative_depth_is_refused(tmp_path: Path, room: list[Frame], beyond: float, refused, capsys) -> None:
+    """As the z of a camera that looks along -z; misses may be a great number."""
+
+    def negated(depth: np.ndarray) -> np.ndarray:
+        depth = -depth
+        depth[:9] = beyond
+        return depth
+
+    folder = written(tmp_path / "in", changed(room, "depth", negated))
+    refused("frame.0000.exr: expected depth above 0", "denoise", folder, "-o", tmp_path / "out", "--no-check")
+    assert run("check", folder) == 1
+    assert "negative" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("depth", "what"), [(0.0, "0 where nothing was hit"), (np.inf, "empty everywhere")])
+def test_empty_depth_is_named(
+    tmp_path: Path, room: list[Frame], depth: float, what: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = written(tmp_path / "in", changed(room, "depth", lambda given: given * 0 + depth))
+    assert f"depth: {what}" in said(capsys, folder, "-o", tmp_path / "out")[1]
+
+
+def test_a_shot_of_nothing_but_sky_is_said(
+    tmp_path: Path, room: list[Frame], capsys: pytest.CaptureFixture[str]
+) -> None:
+    sky = changed(changed(room, "depth", lambda depth: depth + np.inf), "normal", np.zeros_like)
+    assert "depth: nothing was hit" in said(capsys, written(tmp_path / "in", sky), "-o", tmp_path / "out")[1]
+
+
+def test_the_next_frame_s_motion_in_the_third_component_is_said(
+    tmp_path: Path, room: list[Frame], capsys: pytest.CaptureFixture[str]
+) -> None:
+    vectors = changed(room, "motion", lambda motion: np.stack([motion[..., 0], motion[..., 1], 9 - motion[..., 0]], -1))
+    err = said(capsys, written(tmp_path / "in", vectors), "-o", tmp_path / "out")[1]
+    assert "motion: third component is not the change of depth; give previous minus current depth, or two" in err
