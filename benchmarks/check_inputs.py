@@ -47,6 +47,10 @@ error spoils the picture; a warning costs quality, or is none if it is meant so.
 sign of motion where nothing moves, is listed as not checked; it is not passed. A field that is missing, or of a wrong
 shape, is an error right away. Eight frames of a moving camera are plenty.
 
+What passed is listed with the fields that were there, where each is looked at by itself. A picture of fewer than 10,000
+pixels is too small for some checks, which then say so. `svgf-cl denoise` looks at the first eight frames in the same
+way and warns; `--no-check` turns that off.
+
 ## How it is told
 
 Every mistake has a cure. Fields hang together; where they do so clearly better with the cure than without, that is the

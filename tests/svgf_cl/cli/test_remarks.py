@@ -94,9 +94,9 @@ def test_an_error_names_what_a_field_may_be(tmp_path: Path, room: list[Frame], f
 def test_a_mistake_is_a_warning_and_no_check_keeps_quiet(
     tmp_path: Path, room: list[Frame], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    folder = written(tmp_path / "in", changed(room, "motion", lambda motion: motion * [-1, -1, 1]))
+    folder = written(tmp_path / "in", changed(room, "normal", lambda normal: 0.5 * normal + 0.5))
     _, err = said(capsys, folder, "-o", tmp_path / "out")
-    assert "svgf-cl: warning: motion: points the other way; negate it\n" in err
+    assert "svgf-cl: warning: normal: encoded in 0..1; give 2 n - 1, and 0 where nothing was hit\n" in err
     assert "--no-check leaves it out" in err
     assert "Traceback" not in err
     assert said(capsys, folder, "-o", tmp_path / "out", "--no-check")[1] == ""

@@ -10,7 +10,8 @@ import pytest
 
 from svgf_cl import FileError, Frame
 from svgf_cl.io.exr import read_image, write_image
-from svgf_cl.io.frames import find_frames, frame_path, read_frame, write_frame
+from svgf_cl.io.frames import frame_path, read_frame, write_frame
+from svgf_cl.io.sequence import find_frames
 from svgf_cl.io.shot import read_sequence, shared_window
 from svgf_cl.io.window import Window
 from tests.exr_files import exr_bytes
