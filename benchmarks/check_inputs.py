@@ -47,9 +47,9 @@ error spoils the picture; a warning costs quality, or is none if it is meant so.
 sign of motion where nothing moves, is listed as not checked; it is not passed. A field that is missing, or of a wrong
 shape, is an error right away. Eight frames of a moving camera are plenty.
 
-What passed is listed with the fields that were there, where each is looked at by itself. A picture of fewer than 10,000
-pixels is too small for some checks, which then say so. `svgf-cl denoise` looks at the first eight frames in the same
-way and warns; `--no-check` turns that off.
+Every field that is there is looked at; `Report.looked_at` says which. Some checks take a picture of 10,000 pixels or
+more, and say so. `svgf-cl denoise` looks at the first eight frames in the same way and warns; `--no-check` turns that
+off.
 
 ## How it is told
 

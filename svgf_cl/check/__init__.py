@@ -130,5 +130,6 @@ def judged(sums: dict[Check, Array], count: int) -> Report:
         told = check.verdict(sums.get(check), wrong, count)
         findings += [verdict for verdict in told if isinstance(verdict, Finding)]
         unknown += [verdict for verdict in told if isinstance(verdict, Unknown)]
-        passed += [] if told else [check.passed(sums.get(check))]
-    return Report(tuple(findings), tuple(unknown), tuple(passed))
+        passed += [] if told else [check.topic]
+    looked_at = {check.topic: check.looked_at(total) for check, total in sums.items() if check.fields}
+    return Report(tuple(findings), tuple(unknown), tuple(passed), looked_at)

@@ -52,8 +52,6 @@ class Check:
             return [Unknown(self.topic, f"it takes {self.frames} frames in a row")]
         return [Unknown(self.topic, self.silence)] if total is None else self.judge(total)
 
-    def passed(self, total: Array | None) -> str:
-        """The topic, with the fields in brackets that were there to be looked at."""
-        if not self.fields or total is None:
-            return self.topic
-        return f"{self.topic} ({', '.join(name for name, seen in zip(self.fields, total[0], strict=True) if seen)})"
+    def looked_at(self, total: Array) -> tuple[str, ...]:
+        """Which of `fields` the sum over frames tells of."""
+        return tuple(name for name, seen in zip(self.fields, total[0], strict=True) if seen)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 # What svgf_cl takes each field for: docs/conventions.md in a line.
@@ -86,12 +87,15 @@ class Report:
     unknown : tuple of Unknown
         What could not be told. It is not passed.
     passed : tuple of str
-        What was looked at and is right; where that is a matter of single fields, these in brackets.
+        What was looked at and is right.
+    looked_at : dict of str to tuple of str
+        Of what looks at one field after the other, which fields were there for it.
     """
 
     findings: tuple[Finding, ...]
     unknown: tuple[Unknown, ...]
     passed: tuple[str, ...]
+    looked_at: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 def percent(part: float, whole: float) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +10,7 @@ import pyopencl.array as cl_array
 import pytest
 
 from svgf_cl import Frame, FrameError, check_frame, check_sequence
-from svgf_cl.check import CHECKS, Inspection, camera, depth, motion, surfaces, values
+from svgf_cl.check import CHECKS, Inspection, camera, depth, motion, shading, surfaces, values
 from svgf_cl.check.check import Check
 from svgf_cl.check.finding import EXPECTED, Finding, Unknown
 from svgf_cl.frame import CARRIED, CHANNELS
@@ -28,7 +27,7 @@ def room() -> list[Frame]:
 
 def test_each_check_is_a_finding_or_unknown_or_passed(room: list[Frame]) -> None:
     report = check_sequence(room)
-    topics = [*{unknown.topic for unknown in report.unknown}, *(passed.split(" (")[0] for passed in report.passed)]
+    topics = [*{unknown.topic for unknown in report.unknown}, *report.passed]
     assert sorted(topics) == sorted(check.topic for check in CHECKS)
 
 
@@ -111,9 +110,11 @@ def test_frames_without_optional_fields_are_checked(room: list[Frame]) -> None:
 def test_what_was_not_there_has_not_passed(given: tuple[str, ...]) -> None:
     frame = bumpy(np.random.default_rng(1))
     report = check_frame(only(frame, ("color", *given)))
-    listed = {name for passed in report.passed for name in re.findall(r"\w+", passed.partition(" (")[2])}
-    assert {"color", "normal", "depth", "motion", *given} - {"id"} <= listed
-    assert listed <= {"color", "normal", "depth", "motion", *given}
+    there = {"color", "normal", "depth", "motion", *given}
+    assert set(report.looked_at[values.FINITE.topic]) == there - {"id"}
+    assert all(set(fields) <= there for topic, fields in report.looked_at.items() if topic != shading.PARTS.topic)
+    for check, needed in ((values.ALBEDO, "albedo"), (values.ROUGHNESS, "roughness"), (shading.PARTS, "diffuse")):
+        assert (check.topic in {unknown.topic for unknown in report.unknown}) == (needed not in given)
 
 
 @pytest.mark.parametrize("field", [name for name in CHANNELS if name != "id"])
