@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from svgf_cl.io.exr import read_image
-from svgf_cl.io.sequence import find_frames
 from svgf_cl.io.pictures import read_picture
+from svgf_cl.io.sequence import find_frames
 from svgf_cl_tracer import load_environment
 from tests.command_line import run
 
