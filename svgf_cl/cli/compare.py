@@ -14,10 +14,16 @@ from svgf_cl.compare.report import COLUMNS, measured, misses, pairs, table_rows
 
 def compare(
     a: Annotated[
-        Path, typer.Argument(metavar="A", help="The picture to judge, or a folder of frame.0000.exr and so on.")
+        Path,
+        typer.Argument(
+            metavar="A", help="The picture to judge, or a folder with a sequence of them, such as frame.0000.exr."
+        ),
     ],
     b: Annotated[
-        Path, typer.Argument(metavar="B", help="Its reference, or a folder; in it reference.* count before frame.*.")
+        Path,
+        typer.Argument(
+            metavar="B", help="Its reference, or a folder; beside reference.*.exr in it, frame.*.exr do not count."
+        ),
     ],
     min_psnr: Annotated[
         float | None, typer.Option(metavar="DB", help="Least PSNR of any frame.", callback=check_threshold)
