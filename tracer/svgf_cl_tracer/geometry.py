@@ -34,6 +34,8 @@ class Instance:
         Texture coordinates, v up; 0 where absent.
     motion : Motion, optional
         Carries corners and normals, which are then in the object's own space, into the world.
+    colours : (T, 3, 3) float, optional
+        Linear colours at the corners, 0..1, that multiply the material's base colour.
 
     Raises
     ------
@@ -46,10 +48,11 @@ class Instance:
     normals: NDArray[np.floating] | None = None
     uv: NDArray[np.floating] | None = None
     motion: Motion | None = None
+    colours: NDArray[np.floating] | None = None
 
     def __post_init__(self) -> None:
         count = len(self.corners)
-        for name, size in (("corners", 3), ("normals", 3), ("uv", 2)):
+        for name, size in (("corners", 3), ("normals", 3), ("uv", 2), ("colours", 3)):
             values, expected = getattr(self, name), (count, 3, size)
             if values is not None and values.shape != expected:
                 raise SceneError(f"instance: expected {name} of shape {expected}, got {values.shape}")
@@ -72,10 +75,10 @@ class Instance:
         if self.normals is None:
             corners = self.corners_at(time)
             face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-            return _unit(np.repeat(face[:, None], 3, axis=1))
+            return unit(np.repeat(face[:, None], 3, axis=1))
         if self.motion is None:
             return self.normals
-        return _unit(_product(self.normals, cofactors(self.motion.matrix(time)[:3, :3])))
+        return unit(product(self.normals, cofactors(self.motion.matrix(time)[:3, :3])))
 
     @cached_property
     def _box(self) -> Float64:
@@ -86,13 +89,14 @@ class Instance:
         if self.motion is None:
             return points
         matrix = self.motion.matrix(time)
-        return _product(points, matrix[:3, :3]) + matrix[:3, 3]
+        return product(points, matrix[:3, :3]) + matrix[:3, 3]
 
 
 class Triangles(NamedTuple):
     """Triangles as arrays over their number; of three rows the last two are differences to the first corner's.
 
-    Shapes: `corners` and `normals` (T, 3, 3), `uv` (T, 3, 2), `instance` (T,), ids from 1, `material` (T,).
+    Shapes: `corners` and `normals` (T, 3, 3), `uv` (T, 3, 2), `instance` (T,), ids from 1, `material` (T,); `colours`
+    (T, 3, 3), or (0, 3, 3) where no instance has any.
     """
 
     corners: Float32
@@ -100,6 +104,7 @@ class Triangles(NamedTuple):
     uv: Float32
     instance: NDArray[np.uint32]
     material: NDArray[np.int32]
+    colours: Float32
 
     @classmethod
     def of(cls, instances: Sequence[Instance], ids: Sequence[int], materials: Sequence[int], time: float) -> Triangles:
@@ -112,6 +117,7 @@ class Triangles(NamedTuple):
             _differences(_joined(uv, (3, 2))),
             np.repeat(np.array(ids, np.uint32), counts),
             np.repeat(np.array(materials, np.int32), counts),
+            _differences(_joined(_colours(instances), (3, 3))),
         )
 
     def moved(self, instances: Sequence[Instance], time: float) -> Triangles:
@@ -121,6 +127,13 @@ class Triangles(NamedTuple):
             corners=np.concatenate([self.corners[:first], corners_of(instances, time)]),
             normals=np.concatenate([self.normals[:first], normals_of(instances, time)]),
         )
+
+
+def _colours(instances: Sequence[Instance]) -> list[NDArray[np.floating]]:
+    """Colours (T, 3, 3) at the corners of each instance; none at all where no instance has any."""
+    if all(instance.colours is None for instance in instances):
+        return []
+    return [np.ones((len(i.corners), 3, 3)) if i.colours is None else i.colours for i in instances]
 
 
 def corners_of(instances: Sequence[Instance], time: float) -> Float32:
@@ -227,11 +240,12 @@ def _joined(parts: Sequence[NDArray[np.floating]], shape: tuple[int, int]) -> ND
     return np.concatenate([*parts, np.zeros((0, *shape), np.float32)])
 
 
-def _product(vectors: NDArray[np.floating], matrix: Float64) -> Float64:
+def product(vectors: NDArray[np.floating], matrix: Float64) -> Float64:
     """`matrix` times each of `vectors` (..., 3), without BLAS: its rounding may hang on the number of threads."""
     return vectors[..., :1] * matrix[:, 0] + vectors[..., 1:2] * matrix[:, 1] + vectors[..., 2:] * matrix[:, 2]
 
 
-def _unit(vectors: NDArray[np.floating]) -> NDArray[np.floating]:
+def unit(vectors: NDArray[np.floating]) -> NDArray[np.floating]:
+    """`vectors` (..., 3) at length 1; those of length 0 as they are."""
     length = np.sqrt(np.square(vectors).sum(-1, keepdims=True))
     return vectors / np.where(length > 0.0, length, 1.0)

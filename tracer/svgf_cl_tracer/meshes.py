@@ -1,15 +1,16 @@
-"""From what trimesh reads to what the tracer takes: triangles, colours, images."""
+"""From what files hold to what the tracer takes: triangles, colours, images."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import PIL.Image
-import trimesh
+from numpy.typing import NDArray
 
 from .errors import SceneError
-from .geometry import Instance
+from .geometry import Instance, cofactors, product, unit
 from .materials import Colour, Material
 from .motion import Keyframes, Motion
 from .textures import Image
@@ -19,38 +20,51 @@ from .vectors import Float64
 MAX_PIXELS = 2**28
 
 
-def instance(mesh: trimesh.Trimesh, motion: Motion, material: Material) -> Instance:
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles that share their corners.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float
+    faces : (F, 3) int
+        Three vertices each, counter-clockwise seen from the front.
+    normals : (V, 3) float, optional
+        The triangles are flat where absent.
+    uv : (V, 2) float, optional
+        Texture coordinates, v up.
+    colours : (V, 3) float, optional
+        Linear, 0..1: factors of the material's base colour.
+    """
+
+    vertices: NDArray[np.floating]
+    faces: NDArray[np.int64]
+    normals: NDArray[np.floating] | None = None
+    uv: NDArray[np.floating] | None = None
+    colours: NDArray[np.floating] | None = None
+
+
+def instance(mesh: Mesh, motion: Motion, material: Material) -> Instance:
     """`mesh` on its way through the world; at its place there where it does not move."""
     transform = motion.matrix(0.0)
     # A mirrored object turns its triangles over, and with them the side that emits light.
     faces = mesh.faces if np.linalg.det(transform[:3, :3]) > 0.0 else mesh.faces[:, ::-1]
-    # trimesh makes up smooth normals for every mesh that is asked for them: only those of the file are in its cache.
-    normals = mesh.vertex_normals if "vertex_normals" in mesh._cache else None
-    uv = getattr(mesh.visual, "uv", None)
-    texcoords = None if uv is None else np.asarray(uv)[faces]
-    if is_moving(motion):
-        return Instance(mesh.vertices[faces], material, None if normals is None else normals[faces], texcoords, motion)
-    corners = trimesh.transform_points(mesh.vertices, transform)[faces]
-    if normals is not None:
-        normals = trimesh.unitize(normals @ _cofactors(transform[:3, :3]).T)[faces]
-    return Instance(corners, material, normals, texcoords)
+    moving = is_moving(motion)
+    if not moving:
+        mesh = _placed(mesh, transform)
+    normals, uv, colours = (None if each is None else each[faces] for each in (mesh.normals, mesh.uv, mesh.colours))
+    return Instance(mesh.vertices[faces], material, normals, uv, motion if moving else None, colours)
+
+
+def _placed(mesh: Mesh, transform: Float64) -> Mesh:
+    vertices = product(mesh.vertices, transform[:3, :3]) + transform[:3, 3]
+    normals = None if mesh.normals is None else unit(product(mesh.normals, cofactors(transform[:3, :3])))
+    return replace(mesh, vertices=vertices, normals=normals)
 
 
 def is_moving(motion: Motion) -> bool:
     """Whether anything in `motion` changes over time."""
     return any(isinstance(link, Keyframes) for link in motion.links)
-
-
-def _cofactors(matrix: Float64) -> Float64:
-    """What turns normals, up to length and sign, where `matrix` moves points: a flattening one has no inverse."""
-    a, b, c = matrix / (np.abs(matrix).max() or 1.0)  # else the products of a small scale are taken for zero
-    return np.array([np.cross(b, c), np.cross(c, a), np.cross(a, b)])
-
-
-def unnamed_material(mesh: trimesh.Trimesh) -> Material:
-    """The material of a mesh whose file names none: grey, or the mesh's main vertex colour."""
-    visual: Any = mesh.visual
-    return Material(colour(visual.main_color / 255.0)) if visual.defined else Material()
 
 
 def colour(values: Any) -> Colour:

@@ -23,7 +23,7 @@ from .bsdf import (
 from .camera import Lens, ray_through
 from .compiled import compiled
 from .gbuffer import describe, describe_outside
-from .geometry import Surface, surface_at
+from .geometry import Surface, interpolated, surface_at
 from .light_sampling import lamp_density, mis_weight, outside_radiance, sample_light
 from .materials import base_colour, emitted_radiance
 from .paths import (
@@ -176,6 +176,8 @@ def shade(
         if ends:
             continue
         base = base_colour(tables.materials, material, surface.u, surface.v)
+        if len(tables.triangles.colours):
+            base = multiply(base, interpolated(tables.triangles.colours, triangle, b, c))
         outgoing = scale(direction, -1.0)
         r = reflection(
             base,

@@ -1,4 +1,4 @@
-"""glTF and GLB files: trimesh decodes meshes and textures; nodes, motion, materials, lights, cameras are read here."""
+"""glTF and GLB files: meshes, nodes, motion, materials, lights and cameras; what is lost of a file is named."""
 
 from .model import load_gltf
 

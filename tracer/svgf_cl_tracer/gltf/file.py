@@ -1,25 +1,22 @@
-"""The file itself: its JSON, the numbers in its buffers, and its meshes as trimesh decodes them."""
+"""The file itself: its JSON, and the numbers in its buffers."""
 
 from __future__ import annotations
 
-import base64
-import io
 import json
 import struct
-from collections import defaultdict
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
-from trimesh.resolvers import FilePathResolver
 
 from svgf_cl_tracer.errors import SceneError
 from svgf_cl_tracer.vectors import Float64
+
+from .extensions import INVISIBLE, READ
+from .resources import resource
 
 GLB_HEADER = struct.Struct("<4sII")
 CHUNK_HEADER = struct.Struct("<I4s")
@@ -29,17 +26,8 @@ Thing = TypeVar("Thing")
 COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 COLUMNS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 
-# What the accessors of a mesh hold that are read.
-ATTRIBUTES = {"POSITION": "VEC3", "NORMAL": "VEC3", "TEXCOORD_0": "VEC2"}
-
-# Those without which a file cannot be shown and yet can be shown here.
-EXTENSIONS = {
-    "KHR_lights_punctual",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_specular",
-    "KHR_materials_transmission",
-}
+# An accessor may stand for zeros that the file does not hold: a few bytes for any number of them.
+MAX_ZEROS = 2**22
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,13 +39,14 @@ class Gltf:
     path : Path
     document : dict
         Its JSON.
-    chunks : bytes, optional
-        What follows the JSON in a binary file.
+    binary : bytes, optional
+        The buffer that a binary file holds beside it.
     """
 
     path: Path
     document: dict[str, Any]
-    chunks: bytes | None = None
+    binary: bytes | None = None
+    _buffers: dict[int, bytes] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod
     def read(cls, path: Path) -> Gltf:
@@ -66,22 +55,25 @@ class Gltf:
         Raises
         ------
         SceneError
-            It needs an extension that is not known here.
+            It is of another version, or needs an extension that is not known here.
         ValueError, struct.error
             It is no glTF.
         """
-        data, chunks = path.read_bytes(), None
+        data, binary = path.read_bytes(), None
         if data[:4] == b"glTF":
-            length, kind = CHUNK_HEADER.unpack_from(data, GLB_HEADER.size)
-            if kind != b"JSON":
-                raise ValueError("the first chunk of the GLB is not JSON")
-            start = GLB_HEADER.size + CHUNK_HEADER.size
-            data, chunks = data[start : start + length], data[start + length :]
+            chunks = _chunks(data)
+            if b"JSON" not in chunks:
+                raise ValueError("the GLB has no chunk of JSON")
+            data, binary = chunks[b"JSON"], chunks.get(b"BIN\0")
         document = json.loads(data)
-        unknown = sorted(set(document.get("extensionsRequired", [])) - EXTENSIONS)
+        version = document.get("asset", {}).get("version", "2.0")
+        if not str(version).startswith("2."):
+            raise SceneError(f"asset.version: expected glTF 2.0, found {version!r}; export the model as glTF 2.0")
+        known = READ | INVISIBLE
+        unknown = sorted(set(document.get("extensionsRequired", [])) - known)
         if unknown:
-            raise SceneError(f"extensionsRequired: expected none but {', '.join(sorted(EXTENSIONS))}, found {unknown}")
-        return cls(path, document, chunks)
+            raise SceneError(f"extensionsRequired: expected none but {', '.join(sorted(known))}, found {unknown}")
+        return cls(path, document, binary)
 
     def item(self, kind: str, index: Any) -> dict[str, Any]:
         """The JSON object at `index` of the list `kind`, such as ``"nodes"``; `SceneError` where there is none."""
@@ -93,67 +85,52 @@ class Gltf:
         Raises
         ------
         SceneError
-            They are sparse or compressed, or the file does not have them.
+            The file does not have them.
         """
-        values = self._values(accessor)
+        values = self.values(accessor)
         numbers: Float64 = values.astype(np.float64)
-        if self.item("accessors", accessor).get("normalized"):
+        if self.item("accessors", accessor).get("normalized") and values.dtype.kind in "iu":
             numbers = np.maximum(numbers / np.iinfo(values.dtype).max, -1.0)
         return numbers
 
-    def meshes(self) -> dict[int, list[trimesh.Trimesh]]:
-        """The triangles of each mesh by its index, one `Trimesh` a primitive; materials are called by their index.
-
-        Raises
-        ------
-        SceneError
-            Some are sparse or compressed, or the file does not have them.
-        """
-        for mesh in self.document.get("meshes", []):
-            for accessor, kind in _accessors_read(mesh):
-                found = self.item("accessors", accessor).get("type")
-                if found != kind:
-                    raise SceneError(f"accessors[{accessor}]: expected the type {kind}, found {found}")
-                self._values(accessor)
-        stream, kind = io.BytesIO(self._for_trimesh()), "gltf" if self.chunks is None else "glb"
-        loaded = trimesh.load_scene(stream, file_type=kind, resolver=FilePathResolver(str(self.path)))
-        found = defaultdict(list)
-        for geometry in loaded.geometry.values():
-            if isinstance(geometry, trimesh.Trimesh):
-                found[geometry.metadata["mesh"]].append(geometry)
-        return found
-
-    def _for_trimesh(self) -> bytes:
-        """The file without all that is read here, and with names that lead from what trimesh makes back to the JSON."""
-        aside = ("nodes", "scenes", "scene", "cameras", "animations", "skins")
-        document = {key: value for key, value in self.document.items() if key not in aside}
-        document["materials"] = [m | {"name": str(n)} for n, m in enumerate(document.get("materials", []))]
-        document["meshes"] = [m | {"extras": {"mesh": n}} for n, m in enumerate(document.get("meshes", []))]
-        # trimesh makes room for numbers that no buffer holds, however many the file claims.
-        document["accessors"] = [self._or_empty(index) for index in range(len(document.get("accessors", [])))]
-        text = json.dumps(document).encode()
-        if self.chunks is None:
-            return text
-        text += b" " * (-len(text) % 4)
-        total = GLB_HEADER.size + CHUNK_HEADER.size + len(text) + len(self.chunks)
-        return GLB_HEADER.pack(b"glTF", 2, total) + CHUNK_HEADER.pack(len(text), b"JSON") + text + self.chunks
-
-    def _or_empty(self, accessor: int) -> dict[str, Any]:
-        """The JSON of an accessor; of one that cannot be read, and that no triangle needs, that of an empty one."""
-        layout = self.item("accessors", accessor)
-        try:
-            self._values(accessor)
-        except SceneError:
-            return {"componentType": 5126, "type": layout.get("type"), "count": 0}
-        return layout
-
-    def _values(self, accessor: int) -> NDArray[Any]:
-        """The values (n, components) of an accessor as the file has them."""
+    def values(self, accessor: int) -> NDArray[Any]:
+        """The values (n, components) of an accessor as the file has them; `SceneError` where it does not."""
         layout, where = self.item("accessors", accessor), f"accessors[{accessor}]"
-        if not _plain(layout):
-            raise SceneError(f"{where}: expected plain data, found sparse or compressed data")
+        values: NDArray[Any]
+        if "bufferView" in layout:
+            values = self._block(where, layout)
+        elif isinstance(count := layout.get("count"), int) and 0 <= count <= MAX_ZEROS:
+            values = np.zeros((count, COLUMNS[layout["type"]]), COMPONENTS[layout["componentType"]])
+        else:
+            raise SceneError(f"{where}: expected a count in 0..{MAX_ZEROS} without a bufferView, found {count!r}")
+        return self._replaced(where, values, layout) if "sparse" in layout else values
+
+    def view(self, index: Any) -> memoryview:
+        """The bytes of a buffer view; `SceneError` where the file does not have them."""
+        view = self.item("bufferViews", index)
+        buffer, start, length = self._buffer(view.get("buffer")), view.get("byteOffset", 0), view.get("byteLength")
+        if not (isinstance(start, int) and isinstance(length, int) and 0 <= start <= start + length <= len(buffer)):
+            raise SceneError(
+                f"bufferViews[{index}]: expected bytes that its buffer holds, found {length!r} at {start!r}"
+            )
+        return memoryview(buffer)[start : start + length]
+
+    def _replaced(self, where: str, values: NDArray[Any], layout: dict[str, Any]) -> NDArray[Any]:
+        """`values` with those replaced that a sparse accessor lists."""
+        sparse = layout["sparse"]
+        result: NDArray[Any] = values.copy()
+        size = {"count": sparse["count"]}
+        rows = self._block(f"{where}.sparse.indices", sparse["indices"] | size | {"type": "SCALAR"})[:, 0]
+        if rows.dtype.kind != "u" or (rows >= len(result)).any():
+            raise SceneError(f"{where}.sparse.indices: expected places below {len(result)}, found others")
+        alike = {"type": layout["type"], "componentType": layout["componentType"]}
+        result[rows] = self._block(f"{where}.sparse.values", sparse["values"] | size | alike)
+        return result
+
+    def _block(self, where: str, layout: dict[str, Any]) -> NDArray[Any]:
+        """Numbers (count, components) that lie in a buffer view as `layout` says."""
         view = self.item("bufferViews", layout["bufferView"])
-        buffer = entry(self._buffers, "buffers", view.get("buffer"))
+        buffer = self._buffer(view.get("buffer"))
         try:
             kind, columns = np.dtype(COMPONENTS[layout["componentType"]]), COLUMNS[layout["type"]]
             row = columns * kind.itemsize
@@ -167,32 +144,30 @@ class Gltf:
             raise SceneError(f"{where}: expected numbers that its buffer holds, found others ({error})") from error
         return values
 
-    @cached_property
-    def _buffers(self) -> list[bytes]:
-        return [self._buffer(buffer.get("uri")) for buffer in self.document["buffers"]]
-
-    def _buffer(self, uri: str | None) -> bytes:
+    def _buffer(self, index: Any) -> bytes:
+        uri = self.item("buffers", index).get("uri")
+        if uri is None and index == 0 and self.binary is not None:
+            return self.binary
         if uri is None:
-            chunks = self.chunks or b""
-            length, _ = CHUNK_HEADER.unpack_from(chunks)
-            return chunks[CHUNK_HEADER.size : CHUNK_HEADER.size + length]
-        if uri.startswith("data:"):
-            return base64.b64decode(uri.partition("base64,")[2])
-        data: bytes = FilePathResolver(str(self.path)).get(uri)  # refuses what is not beside the file
-        return data
+            raise SceneError(f"buffers[{index}]: expected a uri, found none")
+        if index not in self._buffers:
+            try:
+                self._buffers[index] = resource(self.path.parent, uri)
+            except SceneError as error:
+                raise SceneError(f"buffers[{index}].uri: {error}") from error
+        return self._buffers[index]
 
 
-def _plain(accessor: dict[str, Any]) -> bool:
-    return "bufferView" in accessor and "sparse" not in accessor
-
-
-def _accessors_read(mesh: dict[str, Any]) -> Iterator[tuple[int, str]]:
-    """The accessors that make the triangles of a mesh, and of what type they must be."""
-    for primitive in mesh["primitives"]:
-        attributes = primitive["attributes"]
-        yield from ((attributes[name], kind) for name, kind in ATTRIBUTES.items() if name in attributes)
-        if "indices" in primitive:
-            yield primitive["indices"], "SCALAR"
+def _chunks(data: bytes) -> dict[bytes, bytes]:
+    """The chunks of a binary file by their kind, the first of each; `struct.error` where one is cut off."""
+    found: dict[bytes, bytes] = {}
+    start = GLB_HEADER.size
+    while start < len(data):
+        length, kind = CHUNK_HEADER.unpack_from(data, start)
+        start += CHUNK_HEADER.size
+        found.setdefault(kind, data[start : start + length])
+        start += length
+    return found
 
 
 def entry(things: Sequence[Thing], kind: str, index: Any) -> Thing:

@@ -19,17 +19,16 @@ from svgf_cl_tracer.meshes import colour, is_moving
 from svgf_cl_tracer.model import Light
 from svgf_cl_tracer.motion import Motion
 
+from .extensions import LIGHTS
 from .file import Gltf, entry
 from .nodes import Nodes
-
-EXTENSION = "KHR_lights_punctual"
 
 
 def read_lights(gltf: Gltf, nodes: Nodes) -> Iterator[Light]:
     """The lights of the scene's nodes; a directional one keeps the direction it has at the start."""
-    known = gltf.document.get("extensions", {}).get(EXTENSION, {}).get("lights", [])
+    known = gltf.document.get("extensions", {}).get(LIGHTS, {}).get("lights", [])
     for chain in nodes.chains():
-        extension = nodes.node(chain).get("extensions", {}).get(EXTENSION)
+        extension = nodes.node(chain).get("extensions", {}).get(LIGHTS)
         if extension:
             yield Light(_light(entry(known, "lights", extension["light"]), nodes.motion(chain)), nodes.names(chain))
 

@@ -6,14 +6,14 @@ import math
 from typing import Any
 
 import numpy as np
-import trimesh
 
 from svgf_cl_tracer.errors import SceneError
 from svgf_cl_tracer.materials import Material
-from svgf_cl_tracer.meshes import Images, colour, unnamed_material
+from svgf_cl_tracer.meshes import colour
 from svgf_cl_tracer.textures import Image
 
-from .file import name_of
+from .file import Gltf, name_of
+from .textures import Coordinates, Textures
 
 BLACK, WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 
@@ -24,55 +24,71 @@ CUTOFF, IOR = 0.5, 1.5
 MAX_REFLECTANCE = 0.98
 
 
+# Of a primitive that names none; where it has colours, these are all there is.
+UNNAMED, UNNAMED_COLOURED = Material(), Material(WHITE)
+
+
 class Materials:
     """The materials of one file, each made once.
 
     Parameters
     ----------
-    documents : list of dict
-        Their JSON; the meshes asked about call them by their index.
+    gltf : Gltf
     """
 
-    def __init__(self, documents: list[dict[str, Any]]) -> None:
-        self._documents = documents
+    def __init__(self, gltf: Gltf) -> None:
+        self._gltf, self._textures = gltf, Textures(gltf)
         self._made: dict[int, Material | None] = {}
-        self._images = Images()
 
-    def of(self, mesh: trimesh.Trimesh) -> tuple[str, Material | None]:
-        """Name and material of `mesh`; None where nothing of it can be seen."""
-        source = getattr(mesh.visual, "material", None)
-        if source is None or source.name is None:
-            return "", unnamed_material(mesh)
-        index = int(source.name)
-        document = self._documents[index]
+    def of(self, index: int | None, *, coloured: bool = False) -> tuple[str, Material | None]:
+        """Name and material number `index`, on a mesh that may be coloured; None where nothing of it can be seen."""
+        if index is None:
+            return "", UNNAMED_COLOURED if coloured else UNNAMED
+        document = self._gltf.item("materials", index)
         if index not in self._made:
-            self._made[index] = self._make(document, source)
+            self._made[index] = self._make(document)
         return name_of(document), self._made[index]
 
-    def _make(self, document: dict[str, Any], source: Any) -> Material | None:
-        """The material of `document`, with the images that trimesh hung on `source`."""
+    def coordinates(self, index: int | None) -> Coordinates:
+        """Where the textures of material number `index` lie on a mesh: the base colour's, else those of emission."""
+        document = {} if index is None else self._gltf.item("materials", index)
+        return Coordinates.of(base_texture(document) or document.get("emissiveTexture") or {})
+
+    def _make(self, document: dict[str, Any]) -> Material | None:
         base = document.get("pbrMetallicRoughness", {})
-        for name, where in (("baseColorTexture", base), ("emissiveTexture", document)):
-            if name in where and getattr(source, name) is None:
-                raise SceneError(f"the {name} of material {document.get('name')!r} cannot be read")
         *factor, opacity = base.get("baseColorFactor", (*WHITE, 1.0))
         cutoff = _cutoff(document)
         if cutoff is not None and opacity < cutoff:
             return None
         strength = _extension(document, "emissive_strength").get("emissiveStrength", 1.0)
-        rough, metal = _means(self._images.pixels(source.metallicRoughnessTexture, "RGB"))
+        rough, metal = _means(self._pixels(document, "metallicRoughnessTexture", "RGB"))
+        texture = self._pixels(document, "baseColorTexture", "RGB" if cutoff is None else "RGBA")
         transmissive = _extension(document, "transmission").get("transmissionFactor", 0.0) >= CUTOFF
         return Material(
             colour(factor),
             colour(np.array(document.get("emissiveFactor", BLACK)) * strength),
-            self._images.pixels(source.baseColorTexture, "RGB" if cutoff is None else "RGBA"),
-            self._images.pixels(source.emissiveTexture, "RGB"),
+            texture,
+            self._pixels(document, "emissiveTexture", "RGB"),
             metallic=base.get("metallicFactor", 1.0) * metal,
             roughness=base.get("roughnessFactor", 1.0) * rough,
             ior=_extension(document, "ior").get("ior", IOR) if transmissive else _coat(document),
             transmissive=transmissive,
-            alpha_cutoff=None if cutoff is None or source.baseColorTexture is None else cutoff / opacity,
+            alpha_cutoff=None if cutoff is None or texture is None else cutoff / opacity,
         )
+
+    def _pixels(self, document: dict[str, Any], name: str, mode: str) -> Image | None:
+        """The image of the texture called `name` of a material; None where it has none."""
+        place = document if name == "emissiveTexture" else document.get("pbrMetallicRoughness", {})
+        try:
+            return self._textures.pixels(place.get(name), mode)
+        except SceneError as error:
+            raise SceneError(f"the {name} of material {document.get('name')!r} cannot be read: {error}") from error
+
+
+def base_texture(document: dict[str, Any]) -> dict[str, Any] | None:
+    """The textureInfo of a material's base colour, if it has one."""
+    texture: dict[str, Any] | None = document.get("pbrMetallicRoughness", {}).get("baseColorTexture")
+    return texture
 
 
 def _extension(document: dict[str, Any], name: str) -> dict[str, Any]:

@@ -2,26 +2,30 @@
 
 from __future__ import annotations
 
+import warnings
+from collections.abc import Iterator
 from pathlib import Path
 
-from svgf_cl_tracer.errors import SceneError
+from svgf_cl_tracer.errors import SceneError, SceneWarning
 from svgf_cl_tracer.meshes import instance
 from svgf_cl_tracer.model import Model, Object
+from svgf_cl_tracer.motion import Motion
 from svgf_cl_tracer.vectors import Float64
 
 from .file import Gltf
+from .instancing import places
 from .lights import read_camera, read_lights
+from .losses import losses
 from .materials import Materials
 from .nodes import Nodes
+from .primitives import Primitive, is_shown, read_primitive
 
 # Each takes a few hundred bytes; a small file may show the same mesh in any number of nodes.
 MAX_TRIANGLES = 2**25
 
 
 def load_gltf(path: Path, to_world: Float64) -> Model:
-    """Load the default scene of a .gltf or .glb file.
-
-    Skins and morph targets are shown as their meshes are stored.
+    """Load the default scene of a .gltf or .glb file; a warning each names what is not shown as the file has it.
 
     Parameters
     ----------
@@ -37,14 +41,33 @@ def load_gltf(path: Path, to_world: Float64) -> Model:
         Of many kinds, where the file is damaged.
     """
     gltf = Gltf.read(path)
-    nodes, materials, meshes = Nodes(gltf, to_world), Materials(gltf.document.get("materials", [])), gltf.meshes()
-    objects, room = [], MAX_TRIANGLES
+    nodes = Nodes(gltf, to_world)
+    model = Model(list(_objects(gltf, nodes)), list(read_lights(gltf, nodes)), read_camera(gltf, nodes))
+    for loss in losses(gltf, nodes):
+        warnings.warn(f"{path}: {loss}", SceneWarning, stacklevel=2)
+    return model
+
+
+def _objects(gltf: Gltf, nodes: Nodes) -> Iterator[Object]:
+    """An object for each primitive of each node, as often as the node shows it."""
+    materials, meshes, room = Materials(gltf), dict[int, list[Primitive]](), MAX_TRIANGLES
     for chain in nodes.chains():
-        for mesh in meshes.get(nodes.node(chain).get("mesh", -1), []):
-            room -= len(mesh.faces)
-            if room < 0:
-                raise SceneError(f"meshes: expected at most {MAX_TRIANGLES} triangles in all nodes, found more")
-            name, material = materials.of(mesh)
-            if material is not None:
-                objects.append(Object(instance(mesh, nodes.motion(chain), material), nodes.names(chain), name))
-    return Model(objects, list(read_lights(gltf, nodes)), read_camera(gltf, nodes))
+        node = nodes.node(chain)
+        if "mesh" not in node:
+            continue
+        if node["mesh"] not in meshes:
+            meshes[node["mesh"]] = _primitives(gltf, node["mesh"], materials)
+        for place in places(gltf, node):
+            for primitive in meshes[node["mesh"]]:
+                room -= len(primitive.mesh.faces)
+                if room < 0:
+                    raise SceneError(f"meshes: expected at most {MAX_TRIANGLES} triangles in all nodes, found more")
+                name, material = materials.of(primitive.material, coloured=primitive.mesh.colours is not None)
+                if material is not None:
+                    motion = Motion([*nodes.motion(chain).links, place])
+                    yield Object(instance(primitive.mesh, motion, material), nodes.names(chain), name)
+
+
+def _primitives(gltf: Gltf, mesh: int, materials: Materials) -> list[Primitive]:
+    shown = filter(is_shown, gltf.item("meshes", mesh)["primitives"])
+    return [read_primitive(gltf, part, materials.coordinates(part.get("material"))) for part in shown]

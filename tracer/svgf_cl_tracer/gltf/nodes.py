@@ -50,13 +50,9 @@ class Nodes:
         Raises
         ------
         SceneError
-            There is no scene, a node is not there or hangs on two others, or too many are below one another.
+            A node is not there or hangs on two others, or too many are below one another.
         """
-        document = self._gltf.document
-        if not document.get("scenes"):
-            raise SceneError("scenes: expected at least one, found none")
-        scene = self._gltf.item("scenes", document.get("scene", 0))
-        waiting: list[Chain] = [(root,) for root in reversed(scene["nodes"])]
+        waiting: list[Chain] = [(root,) for root in reversed(self._roots())]
         seen = set()
         while waiting:
             chain = waiting.pop()
@@ -67,6 +63,16 @@ class Nodes:
             seen.add(chain[-1])
             yield chain
             waiting += [(*chain, child) for child in reversed(self.node(chain).get("children", []))]
+
+    def _roots(self) -> list[int]:
+        """The nodes on which all others hang: those of the default scene, or of the file where it has no scenes."""
+        document = self._gltf.document
+        if "scene" in document or document.get("scenes"):
+            roots: list[int] = self._gltf.item("scenes", document.get("scene", 0)).get("nodes", [])
+            return roots
+        nodes = document.get("nodes", [])
+        below = {child for node in nodes for child in node.get("children", [])}
+        return [index for index in range(len(nodes)) if index not in below]
 
     def node(self, chain: Chain) -> dict[str, Any]:
         """The node's JSON."""
@@ -94,6 +100,8 @@ class Nodes:
         node, channels = self._gltf.item("nodes", index), self._channels[index]
         if "matrix" in node and channels:
             raise SceneError(f"nodes[{index}]: expected no matrix on a node that is animated, found one")
+        if "matrix" in node and REST.keys() & node.keys():
+            raise SceneError(f"nodes[{index}]: expected a matrix or {', '.join(REST)}, found both; keep one of them")
         if "matrix" in node:
             matrix: Float64 = np.array(node["matrix"], np.float64).reshape(4, 4).T  # it is stored by columns
             return matrix
