@@ -48,6 +48,11 @@ def test_mean_emission_averages_the_texture_and_follows_the_brightness() -> None
     np.testing.assert_allclose(lamp.emission_at(1.0), LINEAR[IMAGE[0, 0]] / 2, rtol=1e-6)
 
 
+def test_the_opacity_of_an_emission_texture_counts_for_nothing() -> None:
+    texture = np.full((1, 1, 4), (255, 255, 255, 9), np.uint8)
+    np.testing.assert_allclose(Material(emission=(1, 2, 3), emission_texture=texture).emission_at(0.0), (1, 2, 3))
+
+
 def test_brightness_is_never_below_0() -> None:
     assert Material().brightness_at(3.0) == 1.0
     assert Material(brightness=Track([0.0], [[-1.0]])).brightness_at(3.0) == 0.0

@@ -31,8 +31,8 @@ class Material:
         Linear radiance, >= 0.
     base_texture : (h, w, 3) or (h, w, 4) uint8, optional
         sRGB image that multiplies `base_colour`; its fourth channel is the opacity that `alpha_cutoff` tests.
-    emission_texture : (h, w, 3) uint8, optional
-        sRGB image that multiplies `emission`.
+    emission_texture : (h, w, 3) or (h, w, 4) uint8, optional
+        sRGB image that multiplies `emission`; a fourth channel counts for nothing.
     metallic : float
         0 (dielectric) to 1 (metal).
     roughness : float
@@ -84,7 +84,7 @@ class Material:
         """Radiance (3,) at `time` in seconds, averaged over the texture."""
         mean = np.array(self.emission) * self.brightness_at(time)
         if self.emission_texture is not None:
-            mean *= LINEAR[self.emission_texture].mean((0, 1), np.float64)
+            mean *= LINEAR[self.emission_texture[..., :3]].mean((0, 1), np.float64)
         return mean
 
     def brightness_at(self, time: float) -> float:

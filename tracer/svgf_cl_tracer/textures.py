@@ -50,9 +50,9 @@ class Textures(NamedTuple):
 
 
 def _pack(image: Image) -> NDArray[np.uint32]:
-    opaque = np.full((*image.shape[:2], 1), 255, np.uint8)
-    channels = np.concatenate([image, opaque], axis=2)[..., :4]
-    return np.ascontiguousarray(channels).view("<u4")[..., 0]
+    channels = np.full((*image.shape[:2], 4), 255, np.uint8)
+    channels[..., : image.shape[2]] = image
+    return channels.view("<u4")[..., 0]
 
 
 @compiled
