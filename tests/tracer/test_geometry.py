@@ -47,6 +47,7 @@ def test_an_instance_is_masked_where_both_image_and_cutoff_are_given() -> None:
     [
         ({"corners": np.zeros((2, 3))}, r"corners of shape \(2, 3, 3\), got \(2, 3\)"),
         ({"normals": np.zeros((1, 3, 3))}, r"normals of shape \(2, 3, 3\), got \(1, 3, 3\)"),
+        ({"colours": np.zeros((2, 3, 4))}, r"colours of shape \(2, 3, 3\), got \(2, 3, 4\)"),
         ({"uv": np.zeros((2, 3, 3))}, r"uv of shape \(2, 3, 2\), got \(2, 3, 3\)"),
     ],
 )

@@ -114,3 +114,18 @@ def test_a_folder_is_loaded_as_described(tmp_path: Path) -> None:
 def test_a_file_alone_has_no_alternative_lights(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match=r"expected a folder with a scene\.json"):
         load_scene(write_gltf(tmp_path / "a.gltf"), SKY, alternative_lights=True)
+
+
+def test_vertex_colours_multiply_the_base_colour_and_vary_between_corners(tmp_path: Path) -> None:
+    """Linear from corner to corner, whatever the material; other meshes of the scene have none."""
+    buffers = Buffers()
+    square, plain = buffers.square(), buffers.square(1)
+    square["attributes"]["COLOR_0"] = buffers.add([(1, 0, 0, 1), (1, 0, 0, 1), (0, 0, 1, 1), (0, 0, 1, 1)])
+    matt = {"extensions": {"KHR_materials_specular": {"specularFactor": 0}}}
+    half = matt | {"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1], "metallicFactor": 0}}
+    nodes = [{"mesh": 0, "translation": [0, 0.25, 0], "scale": [1, 0.5, 1]}, {"mesh": 1, "translation": [0, -0.5, 0]}]
+    meshes = [{"primitives": [square]}, {"primitives": [plain]}]
+    path = write_gltf(tmp_path / "a.gltf", buffers, meshes=meshes, nodes=nodes, materials=[half, half])
+    albedo = quarters(load_scene(path, SKY))
+    expected = [[(0.375, 0, 0.125), (0.125, 0, 0.375)], [(0.5, 0.5, 0.5), (0.5, 0.5, 0.5)]]
+    np.testing.assert_allclose(albedo, expected, atol=0.02)

@@ -1,22 +1,22 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import PIL.Image
 import pytest
-import trimesh
 
 from svgf_cl_tracer import SceneError, meshes
 from svgf_cl_tracer.materials import Material
-from svgf_cl_tracer.meshes import Images, instance
+from svgf_cl_tracer.meshes import Images, Mesh, instance
 from svgf_cl_tracer.motion import Keyframes, Motion, Track
 from tests.tracer.gltf_files import CORNERS, NORMAL
 
 GREY = Material()
 
 
-def square(*, smooth: bool = False) -> trimesh.Trimesh:
-    normals = np.array(4 * [NORMAL]) if smooth else None
-    return trimesh.Trimesh(CORNERS, [[0, 1, 2], [0, 2, 3]], vertex_normals=normals, process=False)
+def square(*, smooth: bool = False) -> Mesh:
+    return Mesh(CORNERS, np.array([[0, 1, 2], [0, 2, 3]]), np.array(4 * [NORMAL]) if smooth else None)
 
 
 def scaled(*scale: float) -> Motion:
@@ -31,6 +31,13 @@ def test_a_mirrored_object_keeps_its_front() -> None:
     moving = Motion([Keyframes(scale=Track([0], [[-1, 1, 1]]))])
     assert (facing(instance(square(), scaled(-1, 1, 1), GREY).corners)[:, 2] > 0).all()
     assert (facing(instance(square(), moving, GREY).corners)[:, 2] < 0).all()  # it is mirrored later
+
+
+def test_corners_keep_what_is_theirs_when_triangles_are_turned_over() -> None:
+    uv, colours = CORNERS[:, :2] + 1, CORNERS + 0.5
+    made = instance(replace(square(), uv=uv, colours=colours), scaled(-1, 1, 1), GREY)
+    np.testing.assert_array_equal(made.uv, made.corners[..., :2] * (-1, 1) + 1)
+    np.testing.assert_array_equal(made.colours, made.corners * (-1, 1, 1) + 0.5)
 
 
 def test_a_mesh_without_normals_is_flat() -> None:

@@ -1,8 +1,9 @@
 from __future__ import annotations
 
+import itertools
+import json
 import struct
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -20,20 +21,24 @@ def test_text_and_binary_files_hold_the_same(tmp_path: Path) -> None:
     for path in (text, binary):
         gltf = Gltf.read(path)
         np.testing.assert_array_equal(gltf.numbers(0), CORNERS)
-        np.testing.assert_array_equal(gltf.meshes()[0][0].vertices, CORNERS)
 
 
-def test_a_buffer_may_be_a_file_beside_but_nowhere_else(tmp_path: Path) -> None:
-    (tmp_path / "inner").mkdir()
+def test_chunks_of_a_binary_file_are_told_by_their_kind(tmp_path: Path) -> None:
+    """Whatever lies before, between and behind them."""
     buffers = Buffers()
-    buffers.square()
-    for folder in (tmp_path, tmp_path / "inner"):
-        (folder / f"{folder.name}.bin").write_bytes(buffers.data)
-    beside = write_gltf(tmp_path / "inner" / "a.gltf", buffers, buffers=[{"uri": "inner.bin"}])
-    assert Gltf.read(beside).numbers(0).shape == (4, 3)
-    outside = write_gltf(tmp_path / "inner" / "b.gltf", buffers, buffers=[{"uri": f"../{tmp_path.name}.bin"}])
-    with pytest.raises(ValueError, match="escapes"):
-        Gltf.read(outside).numbers(0)
+    buffers.add([[1, 2, 3]])
+    text = json.dumps({"accessors": buffers.accessors, "bufferViews": buffers.views, "buffers": [{"byteLength": 12}]})
+    parts = {b"ABCD": b"else", b"BIN\0": buffers.data, b"JSON": text.encode()}
+    for order in itertools.permutations(parts):
+        chunks = b"".join(struct.pack("<I4s", len(parts[kind]), kind) + parts[kind] for kind in order)
+        (tmp_path / "a.glb").write_bytes(struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks)
+        np.testing.assert_array_equal(Gltf.read(tmp_path / "a.glb").numbers(0), [[1, 2, 3]])
+
+
+def test_a_file_of_version_1_is_refused(tmp_path: Path) -> None:
+    path = write_gltf(tmp_path / "a.gltf", asset={"version": "1.0"})
+    with pytest.raises(SceneError, match=r"asset\.version: expected glTF 2\.0, found '1\.0'"):
+        Gltf.read(path)
 
 
 def test_numbers_may_lie_between_others(tmp_path: Path) -> None:
@@ -61,41 +66,48 @@ def test_a_buffer_too_short_is_refused(tmp_path: Path) -> None:
         Gltf.read(write_gltf(tmp_path / "a.gltf", buffers)).numbers(0)
 
 
-@pytest.mark.parametrize("change", [{"sparse": {"count": 1}}, {"bufferView": None}])
-def test_what_is_sparse_or_compressed_is_refused(tmp_path: Path, change: dict[str, Any]) -> None:
+def test_an_accessor_without_a_buffer_view_is_of_zeros(tmp_path: Path) -> None:
     buffers = Buffers()
-    square = buffers.square()
-    accessor = buffers.accessors[square["attributes"]["POSITION"]]
-    accessor |= change
-    if accessor["bufferView"] is None:
-        del accessor["bufferView"]
-    gltf = Gltf.read(write_gltf(tmp_path / "a.gltf", buffers, meshes=[{"primitives": [square]}]))
-    for read in (gltf.meshes, lambda: gltf.numbers(0)):
-        with pytest.raises(SceneError, match=r"accessors\[0\]: expected plain data, found sparse"):
-            read()
+    buffers.accessors.append({"componentType": 5126, "count": 2, "type": "VEC3"})
+    np.testing.assert_array_equal(Gltf.read(write_gltf(tmp_path / "a.gltf", buffers)).numbers(0), np.zeros((2, 3)))
 
 
-def test_no_room_is_made_for_numbers_that_nothing_shows(tmp_path: Path) -> None:
+@pytest.mark.parametrize("kind", ["<u1", "<u2", "<u4"])
+@pytest.mark.parametrize("based", [True, False])
+def test_sparse_values_replace_those_below(based: bool, kind: str, tmp_path: Path) -> None:
+    """Also where nothing is below: zeros."""
     buffers = Buffers()
-    square = buffers.square()
-    buffers.accessors.append({"componentType": 5126, "count": 10**15, "type": "VEC3"})
-    gltf = Gltf.read(write_gltf(tmp_path / "a.gltf", buffers, meshes=[{"primitives": [square]}]))
-    assert len(gltf.meshes()[0][0].faces) == 2
-
-
-def test_meshes_come_by_index_with_a_part_for_each_primitive(tmp_path: Path) -> None:
-    buffers = Buffers()
-    points = {"attributes": {"POSITION": 0}, "mode": 0}
-    meshes = [
-        {"name": "same", "primitives": [buffers.square(1), buffers.square(0), points]},
-        {"name": "same", "primitives": [buffers.square(1)], "extras": {"mesh": 7}},
-    ]
-    materials = [{"name": "a"}, {"name": "a"}]
-    found = Gltf.read(write_gltf(tmp_path / "a.gltf", buffers, meshes=meshes, materials=materials)).meshes()
-    assert {index: [part.visual.material.name for part in parts] for index, parts in found.items()} == {
-        0: ["1", "0"],
-        1: ["1"],
+    below = np.arange(12.0).reshape(4, 3) if based else np.zeros((4, 3))
+    buffers.add(below)
+    places, values = buffers.add([1, 3], kind), buffers.add([[10, 20, 30], [40, 50, 60]])
+    sparse = {
+        "count": 2,
+        "indices": {"bufferView": places, "componentType": buffers.accessors[places]["componentType"]},
+        "values": {"bufferView": values},
     }
+    buffers.accessors[0]["sparse"] = sparse
+    if not based:
+        del buffers.accessors[0]["bufferView"]
+    below[[1, 3]] = [[10, 20, 30], [40, 50, 60]]
+    np.testing.assert_array_equal(Gltf.read(write_gltf(tmp_path / "a.gltf", buffers)).numbers(0), below)
+
+
+@pytest.mark.parametrize(("places", "kind"), [([4], "<u1"), ([-1], "<i1"), ([0.0], "<f4")])
+def test_sparse_values_lie_within_the_others(places: list[int], kind: str, tmp_path: Path) -> None:
+    buffers = Buffers()
+    buffers.add(np.zeros((4, 3)))
+    index, values = buffers.add(places, kind), buffers.add([[1, 2, 3]])
+    indices = {"bufferView": index, "componentType": buffers.accessors[index]["componentType"]}
+    buffers.accessors[0]["sparse"] = {"count": 1, "indices": indices, "values": {"bufferView": values}}
+    with pytest.raises(SceneError, match=r"accessors\[0\]\.sparse\.indices: expected places below 4"):
+        Gltf.read(write_gltf(tmp_path / "a.gltf", buffers)).numbers(0)
+
+
+def test_no_room_is_made_for_zeros_without_end(tmp_path: Path) -> None:
+    buffers = Buffers()
+    buffers.accessors.append({"componentType": 5126, "count": 10**15, "type": "VEC3"})
+    with pytest.raises(SceneError, match=r"accessors\[0\]: expected a count in 0\.\.\d+ without a bufferView"):
+        Gltf.read(write_gltf(tmp_path / "a.gltf", buffers)).numbers(0)
 
 
 def test_an_extension_that_the_file_cannot_be_shown_without_is_named(tmp_path: Path) -> None:

@@ -74,6 +74,10 @@ def test_a_place_that_is_not_there_is_refused(index: Any, tmp_path: Path) -> Non
     channel = {"sampler": index, "target": {"node": 0, "path": "scale"}}
     broken: dict[str, dict[str, Any]] = {
         "accessors": {"meshes": [{"primitives": [square | {"attributes": {"POSITION": index}}]}]},
+        "materials": {"meshes": [{"primitives": [square | {"material": index}]}]},
+        "meshes": {"nodes": [{"mesh": index}]},
+        "textures": {"materials": [{"emissiveTexture": {"index": index}}]},
+        "images": {"textures": [{"source": index}], "materials": [TEXTURED]},
         "bufferViews": {"accessors": [a | {"bufferView": index} for a in buffers.accessors]},
         "buffers": {"bufferViews": [view | {"buffer": index} for view in buffers.views]},
         "nodes": {"scenes": [{"nodes": [index]}]},

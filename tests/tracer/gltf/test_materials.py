@@ -19,8 +19,7 @@ TEXTURE = {"baseColorTexture": {"index": 0}}
 def read(folder: Path, material: dict[str, Any], image: bytes | None = None) -> Material | None:
     images = [{"uri": uri(png(RGBA) if image is None else image, "image/png")}]
     path = write_gltf(folder / "a.gltf", materials=[material], textures=[{"source": 0}], images=images)
-    gltf = Gltf.read(path)
-    name, made = Materials(gltf.document["materials"]).of(gltf.meshes()[0][0])
+    name, made = Materials(Gltf.read(path)).of(0)
     assert name == material.get("name", "")
     return made
 
@@ -83,7 +82,7 @@ def test_emission_has_its_strength(tmp_path: Path) -> None:
     lamp = {"emissiveFactor": [1.0, 0.5, 0.25], "emissiveTexture": {"index": 0}}
     material = read(tmp_path, lamp | extensions(emissive_strength={"emissiveStrength": 8.0}))
     assert material.emission == (8, 4, 2)
-    np.testing.assert_array_equal(material.emission_texture, RGBA[..., :3])
+    np.testing.assert_array_equal(material.emission_texture, RGBA)
 
 
 @pytest.mark.parametrize(
@@ -109,8 +108,21 @@ def test_what_is_blended_is_cut_out_at_one_half(tmp_path: Path) -> None:
 def test_the_alpha_of_an_opaque_material_is_no_matter(tmp_path: Path) -> None:
     base = TEXTURE | {"baseColorFactor": [1, 1, 1, 0]}
     material = read(tmp_path, {"pbrMetallicRoughness": base})
-    np.testing.assert_array_equal(material.base_texture, RGBA[..., :3])
+    np.testing.assert_array_equal(material.base_texture, RGBA)
     assert material.alpha_cutoff is None
+
+
+def test_a_cutoff_of_0_leaves_all_solid(tmp_path: Path) -> None:
+    """Even what is not opaque at all."""
+    base = TEXTURE | {"baseColorFactor": [1, 1, 1, 0]}
+    material = read(tmp_path, {"pbrMetallicRoughness": base, "alphaMode": "MASK", "alphaCutoff": 0})
+    assert material.alpha_cutoff is None
+
+
+def test_a_primitive_without_a_material_is_grey_or_has_its_own_colours(tmp_path: Path) -> None:
+    materials = Materials(Gltf.read(write_gltf(tmp_path / "a.gltf")))
+    assert materials.of(None)[1].base_colour == (0.8, 0.8, 0.8)
+    assert materials.of(None, coloured=True)[1].base_colour == (1, 1, 1)
 
 
 @pytest.mark.parametrize("base", [{}, TEXTURE])

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ from svgf_cl_tracer import SceneError
 from svgf_cl_tracer.gltf.file import Gltf
 from svgf_cl_tracer.gltf.nodes import Nodes
 from svgf_cl_tracer.motion import Keyframes
-from tests.tracer.gltf_files import Buffers, write_gltf
+from tests.tracer.gltf_files import Buffers, document, write_gltf
 
 QUARTER_ABOUT_Z = (0, 0, np.sqrt(0.5), np.sqrt(0.5))
 
@@ -52,9 +53,30 @@ def test_what_is_no_tree_is_refused(tmp_path: Path, children: list[list[int]]) -
         list(nodes.chains())
 
 
-def test_a_file_without_a_scene_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match="scenes: expected at least one"):
-        list(nodes_of(tmp_path, scenes=[]).chains())
+@pytest.mark.parametrize("more", [{"scene": 1}, {}])
+def test_the_default_scene_is_shown_else_the_first(more: dict[str, int], tmp_path: Path) -> None:
+    gltf = document(nodes=[{}, {}, {}], scenes=[{"nodes": [2]}, {"nodes": [1, 0]}]) | more
+    del gltf["scene" if not more else "materials"]
+    (tmp_path / "a.gltf").write_text(json.dumps(gltf))
+    assert list(Nodes(Gltf.read(tmp_path / "a.gltf"), np.eye(4)).chains()) == ([(1,), (0,)] if more else [(2,)])
+
+
+@pytest.mark.parametrize("scenes", [{}, {"scenes": []}])
+def test_without_scenes_all_nodes_are_shown(scenes: dict[str, list[Any]], tmp_path: Path) -> None:
+    gltf = document(nodes=[{}, {"children": [0]}, {}])
+    del gltf["scenes"], gltf["scene"]
+    (tmp_path / "a.gltf").write_text(json.dumps(gltf | scenes))
+    assert list(Nodes(Gltf.read(tmp_path / "a.gltf"), np.eye(4)).chains()) == [(1,), (1, 0), (2,)]
+
+
+def test_a_scene_may_be_empty(tmp_path: Path) -> None:
+    assert list(nodes_of(tmp_path, scenes=[{}]).chains()) == []
+
+
+def test_a_node_has_a_matrix_or_its_parts(tmp_path: Path) -> None:
+    nodes = nodes_of(tmp_path, nodes=[{"matrix": np.eye(4).ravel().tolist(), "scale": [1, 1, 1]}])
+    with pytest.raises(SceneError, match=r"nodes\[0\]: expected a matrix or translation, rotation, scale, found both"):
+        nodes.motion((0,))
 
 
 def test_transforms_go_from_the_node_outwards_into_the_world(tmp_path: Path) -> None:

@@ -61,26 +61,26 @@ class Materials:
         if cutoff is not None and opacity < cutoff:
             return None
         strength = _extension(document, "emissive_strength").get("emissiveStrength", 1.0)
-        rough, metal = _means(self._pixels(document, "metallicRoughnessTexture", "RGB"))
-        texture = self._pixels(document, "baseColorTexture", "RGB" if cutoff is None else "RGBA")
+        rough, metal = _means(self._pixels(document, "metallicRoughnessTexture"))
+        texture = self._pixels(document, "baseColorTexture")
         transmissive = _extension(document, "transmission").get("transmissionFactor", 0.0) >= CUTOFF
         return Material(
             colour(factor),
             colour(np.array(document.get("emissiveFactor", BLACK)) * strength),
             texture,
-            self._pixels(document, "emissiveTexture", "RGB"),
+            self._pixels(document, "emissiveTexture"),
             metallic=base.get("metallicFactor", 1.0) * metal,
             roughness=base.get("roughnessFactor", 1.0) * rough,
             ior=_extension(document, "ior").get("ior", IOR) if transmissive else _coat(document),
             transmissive=transmissive,
-            alpha_cutoff=None if cutoff is None or texture is None else cutoff / opacity,
+            alpha_cutoff=cutoff / opacity if cutoff and texture is not None else None,
         )
 
-    def _pixels(self, document: dict[str, Any], name: str, mode: str) -> Image | None:
+    def _pixels(self, document: dict[str, Any], name: str) -> Image | None:
         """The image of the texture called `name` of a material; None where it has none."""
-        place = document if name == "emissiveTexture" else document.get("pbrMetallicRoughness", {})
+        texture = (document if name in document else document.get("pbrMetallicRoughness", {})).get(name)
         try:
-            return self._textures.pixels(place.get(name), mode)
+            return None if texture is None else self._textures.pixels(texture)
         except SceneError as error:
             raise SceneError(f"the {name} of material {document.get('name')!r} cannot be read: {error}") from error
 
@@ -120,5 +120,5 @@ def _means(image: Image | None) -> tuple[float, float]:
     """Roughness and metalness, 0..1, averaged over their texture, whose channels two and three they are."""
     if image is None:
         return 1.0, 1.0
-    _, rough, metal = image.mean((0, 1)) / 255.0
+    _, rough, metal = image[..., :3].mean((0, 1)) / 255.0
     return float(rough), float(metal)

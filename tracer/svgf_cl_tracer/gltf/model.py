@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
-from svgf_cl_tracer.errors import SceneError, SceneWarning
+from svgf_cl_tracer.errors import SceneError
 from svgf_cl_tracer.meshes import instance
 from svgf_cl_tracer.model import Model, Object
 from svgf_cl_tracer.motion import Motion
@@ -44,7 +44,7 @@ def load_gltf(path: Path, to_world: Float64) -> Model:
     nodes = Nodes(gltf, to_world)
     model = Model(list(_objects(gltf, nodes)), list(read_lights(gltf, nodes)), read_camera(gltf, nodes))
     for loss in losses(gltf, nodes):
-        warnings.warn(f"{path}: {loss}", SceneWarning, stacklevel=2)
+        warnings.warn(f"{path}: {loss}", stacklevel=3)
     return model
 
 

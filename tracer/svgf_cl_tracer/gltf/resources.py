@@ -6,6 +6,7 @@ import base64
 from pathlib import Path
 from urllib.parse import unquote, unquote_to_bytes
 
+from svgf_cl.errors import shown
 from svgf_cl_tracer.errors import SceneError
 
 
@@ -26,12 +27,12 @@ def resource(folder: Path, uri: str) -> bytes:
             path = (folder / name).resolve()
             found = path.is_file()
         except (OSError, RuntimeError, ValueError) as error:  # a name too long or with a zero in it, a loop of links
-            raise SceneError(f"expected the name of a file, found {_short(uri)} ({error})") from error
+            raise SceneError(f"expected the name of a file, found {shown(uri)} ({error})") from error
         if not path.is_relative_to(folder.resolve()):
-            raise SceneError(f"expected a file in the model's folder or below, found {_short(uri)}")
+            raise SceneError(f"expected a file in the model's folder or below, found {shown(uri)}")
         if found:
             return path.read_bytes()
-    raise SceneError(f"expected a file beside the model, found none called {_short(unquote(uri))}")
+    raise SceneError(f"expected a file beside the model, found none called {shown(unquote(uri))}")
 
 
 def _embedded(data: str) -> bytes:
@@ -39,7 +40,3 @@ def _embedded(data: str) -> bytes:
     head, _, body = data.partition(",")
     raw = unquote_to_bytes(body)
     return base64.b64decode(raw + b"==") if head.lower().strip().endswith(";base64") else raw
-
-
-def _short(uri: str) -> str:
-    return repr(uri if len(uri) <= 80 else f"{uri[:80]}...")

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import io
 import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import PIL.Image
 
 from svgf_cl_tracer.errors import SceneError
-from svgf_cl_tracer.meshes import Images
+from svgf_cl_tracer.images import Images
 from svgf_cl_tracer.textures import Image
 from svgf_cl_tracer.vectors import Float64
 
@@ -62,7 +60,7 @@ class Coordinates:
 
 
 class Textures:
-    """The images of one file, each opened once.
+    """The images of one file.
 
     Parameters
     ----------
@@ -70,43 +68,28 @@ class Textures:
     """
 
     def __init__(self, gltf: Gltf) -> None:
-        self._gltf = gltf
-        self._opened: dict[int, PIL.Image.Image] = {}
-        self._images = Images()
+        self._gltf, self._images = gltf, Images()
 
-    def pixels(self, texture: dict[str, Any] | None, mode: str) -> Image | None:
-        """The image of a textureInfo as (h, w, channels) with the channels of `mode`, such as ``"RGB"``; None for none.
-
-        Raises
-        ------
-        SceneError
-            It cannot be read.
-        """
-        if texture is None:
-            return None
+    def pixels(self, texture: dict[str, Any]) -> Image:
+        """The image (h, w, 3 or 4) of a textureInfo; `SceneError` where it cannot be read."""
         source = self._source(texture["index"])
-        try:
-            if source not in self._opened:
-                self._opened[source] = PIL.Image.open(io.BytesIO(self._bytes(source)))
-            return self._images.pixels(self._opened[source], mode)
-        except SceneError as error:
-            raise SceneError(f"images[{source}]: {error}") from error
-        except Exception as error:  # Pillow raises whatever comes of what a file holds
-            raise SceneError(f"images[{source}]: expected PNG, JPEG or WebP, cannot be read ({error})") from error
+        return self._images.pixels(str(source), self._bytes(source))
 
     def _source(self, index: Any) -> int:
         """The number of the image that a texture shows."""
         texture = self._gltf.item("textures", index)
-        source: int | None = texture.get("extensions", {}).get(WEBP, texture).get("source")
-        if source is None:
-            known = ", ".join(texture.get("extensions", {})) or "no extension"
-            raise SceneError(f"textures[{index}]: expected an image that can be read, found none ({known})")
+        holder = texture.get("extensions", {}).get(WEBP, texture)
+        if "source" not in holder:
+            known = ", ".join(texture.get("extensions", {})) or "nothing"
+            raise SceneError(f"textures[{index}]: expected the source of an image, found {known}")
+        source: int = holder["source"]
         return source
 
     def _bytes(self, index: int) -> bytes:
         image = self._gltf.item("images", index)
-        return (
-            resource(self._gltf.path.parent, image["uri"])
-            if "uri" in image
-            else bytes(self._gltf.view(image["bufferView"]))
-        )
+        if "uri" not in image:
+            return bytes(self._gltf.view(image.get("bufferView")))
+        try:
+            return resource(self._gltf.path.parent, image["uri"])
+        except SceneError as error:
+            raise SceneError(f"images[{index}].uri: {error}") from error

@@ -1,0 +1,51 @@
+"""Small files that once came out wrong, from ``../shared/cases``."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from svgf_cl import Frame
+from svgf_cl_tracer import Camera, CameraPath, Shot, load_scene, render_frame
+
+CASES = Path(__file__).parents[4] / "shared" / "cases" / "gltf"
+FRONT = CameraPath.static(Camera((0, 0, 2), (0, 0, 0), fov_y=30.0))
+
+pytestmark = pytest.mark.skipif(not CASES.is_dir(), reason="needs ../shared/cases")
+
+
+def front(name: str) -> Frame:
+    """The file from the front; a warning about it is an error."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        scene = load_scene(CASES / name, (1.0, 1.0, 1.0))
+    return render_frame(Shot(scene, (32, 32), camera_path=FRONT), 0, jitter=False)
+
+
+@pytest.mark.parametrize("name", ["texcoords_float.gltf", "texcoords_uint16_normalized.gltf"])
+def test_left_is_red_and_right_is_green(name: str) -> None:
+    albedo = np.asarray(front(name).albedo)
+    assert (albedo[16, 4] > albedo[16, 28]).tolist() == [True, False, False]
+    np.testing.assert_allclose(albedo, front("texcoords_float.gltf").albedo, atol=1e-4)
+
+
+def test_vertex_colours_count_beside_a_material() -> None:
+    albedo = front("vertex_colours_white_material.gltf").albedo
+    np.testing.assert_allclose(albedo, np.full((32, 32, 3), (1, 0, 0)), atol=0.02)  # a metal is whiter at its edge
+
+
+@pytest.mark.parametrize("name", ["triangle_fan", "uri_with_percent20", "no_scenes", "accessor_of_zeros"])
+def test_a_plate_covers_the_picture(name: str) -> None:
+    assert np.asarray(front(f"{name}.gltf").id).all()
+
+
+def test_both_instances_are_shown() -> None:
+    assert set(np.unique(front("gpu_instancing.gltf").id)) == {0, 1, 2}
+
+
+def test_a_camera_that_is_not_read_is_named() -> None:
+    with pytest.warns(UserWarning, match=r"orthographic\.gltf: cameras that are not perspective are not read: 1"):
+        load_scene(CASES / "orthographic.gltf", (1.0, 1.0, 1.0))
