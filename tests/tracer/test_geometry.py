@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -94,6 +95,15 @@ def test_triangles_know_where_they_come_from(floor: Callable[..., Instance]) -> 
     np.testing.assert_array_equal(found.material, [0] * 2 + [7] * len(SMOOTH.corners))
     assert found.instance.dtype == np.uint32
     np.testing.assert_array_equal(found.uv[2:], 0)
+
+
+def test_what_has_no_colours_is_white_beside_what_has(floor: Callable[..., Instance]) -> None:
+    plain, colours = floor(Material()), np.random.default_rng(1).random((2, 3, 3))
+    found = Triangles.of([plain, replace(plain, colours=colours)], [1, 2], [0, 0], 0.0).colours
+    for corner, (b, c) in enumerate([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]):
+        np.testing.assert_allclose(interpolated(found, 0, b, c), (1, 1, 1))
+        np.testing.assert_allclose(interpolated(found, 3, b, c), colours[1, corner], atol=1e-6)
+    assert len(Triangles.of([plain], [1], [0], 0.0).colours) == 0, "no memory where there are none"
 
 
 @settings(deadline=None)
