@@ -50,6 +50,8 @@ def test_numbers_that_are_not_finite_are_refused(floor: Floor) -> None:
         Scene([Instance(np.full((1, 3, 3), np.nan), Material())], sky=WHITE)
     with pytest.raises(SceneError, match="finite texture coordinates"):
         Scene([Instance(np.zeros((1, 3, 3)), Material(), uv=np.full((1, 3, 2), np.inf))], sky=WHITE)
+    with pytest.raises(SceneError, match="finite vertex colours"):
+        Scene([Instance(np.zeros((1, 3, 3)), Material(), colours=np.full((1, 3, 3), np.nan))], sky=WHITE)
 
 
 @pytest.mark.parametrize("sky", [(-1.0, 0.0, 0.0), (np.nan, 1.0, 1.0), (np.inf, 1.0, 1.0)])

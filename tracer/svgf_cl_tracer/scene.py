@@ -172,6 +172,8 @@ def _check(instances: Sequence[Instance]) -> None:
         raise SceneError("scene: expected finite vertex positions, got NaN or infinity")
     if not all(instance.uv is None or np.isfinite(instance.uv).all() for instance in instances):
         raise SceneError("scene: expected finite texture coordinates, got NaN or infinity")
+    if not all(instance.colours is None or np.isfinite(instance.colours).all() for instance in instances):
+        raise SceneError("scene: expected finite vertex colours, got NaN or infinity")
 
 
 def _framing(instances: Sequence[Instance]) -> Camera:

@@ -23,7 +23,8 @@ class Surface(Part):
     """What all materials have."""
 
     color: Reflectance = Field(
-        (1.0, 1.0, 1.0), description="Reflectance, of glass transmittance; a base texture is multiplied by it."
+        (1.0, 1.0, 1.0),
+        description="Reflectance, of glass transmittance; base texture and vertex colours are multiplied by it.",
     )
     base_texture: bool = Field(False, description="Whether the model's base colour texture is used.")
     mask: bool = Field(
