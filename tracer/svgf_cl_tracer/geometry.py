@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -33,7 +33,8 @@ class Instance:
     uv : (T, 3, 2) float, optional
         Texture coordinates, v up; 0 where absent.
     motion : Motion, optional
-        Carries corners and normals, which are then in the object's own space, into the world.
+        Carries corners and normals, which are then in the object's own space, into the world. The front goes with
+        them, though a mirroring motion makes its corners run clockwise.
     colours : (T, 3, 3) float, optional
         Linear colours at the corners, 0..1, that multiply the material's base colour.
 
@@ -75,10 +76,22 @@ class Instance:
         if self.normals is None:
             corners = self.corners_at(time)
             face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-            return unit(np.repeat(face[:, None], 3, axis=1))
+            return _unit(np.repeat(face[:, None], 3, axis=1))
         if self.motion is None:
             return self.normals
-        return unit(product(self.normals, cofactors(self.motion.matrix(time)[:3, :3])))
+        return _unit(_product(self.normals, cofactors(self.motion.matrix(time)[:3, :3])))
+
+    def mirrored_at(self, time: float) -> bool:
+        """Whether its corners run clockwise seen from the front, in the world at `time` in seconds."""
+        return self.motion is not None and mirrors(self.motion.matrix(time))
+
+    def at_rest(self, time: float) -> Instance:
+        """The same without a motion, where it is at `time` in seconds."""
+        order = slice(None, None, -1) if self.mirrored_at(time) else slice(None)
+        normals = None if self.normals is None else self.normals_at(time)[:, order]
+        uv, colours = (None if values is None else values[:, order] for values in (self.uv, self.colours))
+        corners = self.corners_at(time)[:, order]
+        return replace(self, corners=corners, normals=normals, uv=uv, colours=colours, motion=None)
 
     @cached_property
     def _box(self) -> Float64:
@@ -89,14 +102,15 @@ class Instance:
         if self.motion is None:
             return points
         matrix = self.motion.matrix(time)
-        return product(points, matrix[:3, :3]) + matrix[:3, 3]
+        return _product(points, matrix[:3, :3]) + matrix[:3, 3]
 
 
 class Triangles(NamedTuple):
     """Triangles as arrays over their number; of three rows the last two are differences to the first corner's.
 
-    Shapes: `corners` and `normals` (T, 3, 3), `uv` (T, 3, 2), `instance` (T,), ids from 1, `material` (T,); `colours`
-    (T, 3, 3), or (0, 3, 3) where no instance has any.
+    Shapes: `corners` and `normals` (T, 3, 3), `uv` (T, 3, 2), `instance` (T,), ids from 1, `material` (T,). `mirrored`
+    (T,) tells whose corners run clockwise seen from the front. `colours` (T, 3, 3), or (0, 3, 3) where no instance has
+    any.
     """
 
     corners: Float32
@@ -104,6 +118,7 @@ class Triangles(NamedTuple):
     uv: Float32
     instance: NDArray[np.uint32]
     material: NDArray[np.int32]
+    mirrored: NDArray[np.bool_]
     colours: Float32
 
     @classmethod
@@ -117,6 +132,7 @@ class Triangles(NamedTuple):
             _differences(_joined(uv, (3, 2))),
             np.repeat(np.array(ids, np.uint32), counts),
             np.repeat(np.array(materials, np.int32), counts),
+            mirrored_of(instances, time),
             _differences(_joined(_colours(instances), (3, 3))),
         )
 
@@ -126,6 +142,7 @@ class Triangles(NamedTuple):
         return self._replace(
             corners=np.concatenate([self.corners[:first], corners_of(instances, time)]),
             normals=np.concatenate([self.normals[:first], normals_of(instances, time)]),
+            mirrored=np.concatenate([self.mirrored[:first], mirrored_of(instances, time)]),
         )
 
 
@@ -146,10 +163,23 @@ def normals_of(instances: Sequence[Instance], time: float) -> Float32:
     return _differences(_joined([instance.normals_at(time) for instance in instances], (3, 3)))
 
 
+def mirrored_of(instances: Sequence[Instance], time: float) -> NDArray[np.bool_]:
+    """Of every triangle of `instances` whether its corners run clockwise at `time` in seconds, seen from the front."""
+    mirrored = np.array([instance.mirrored_at(time) for instance in instances], np.bool_)
+    return np.repeat(mirrored, [len(instance.corners) for instance in instances])
+
+
+def mirrors(matrix: Float64) -> bool:
+    """Whether a transform (4, 4) mirrors; one that flattens does not."""
+    linear = matrix[:3, :3]
+    # Rounding leaves a flattening one a determinant beside 0.
+    return bool(np.linalg.det(linear) < -1e-14 * np.linalg.norm(linear, axis=0).prod())
+
+
 def cofactors(matrix: NDArray[np.floating]) -> Float64:
     """What turns normals, up to length and sign, where `matrix` (3, 3) moves points: a flattening one has no inverse.
 
-    A mirroring matrix turns normals to the other side; which side of a surface is met is told by its corners.
+    A mirroring matrix turns normals to the other side; which side of a surface is met is not told by them.
     """
     a, b, c = matrix / (np.abs(matrix).max() or 1.0)  # else the products of a small scale are taken for zero
     return np.array([np.cross(b, c), np.cross(c, a), np.cross(a, b)])
@@ -159,7 +189,7 @@ class Surface(NamedTuple):
     """A point where a ray met the scene; both normals look to the side the ray came from.
 
     `point` is on the triangle, `lift` is how far from it a ray is sure to have left it, `u` and `v` are texture
-    coordinates; `front` tells whether the ray met the side from which the corners run counter-clockwise.
+    coordinates; `front` tells whether the ray met the front.
     """
 
     point: Vec3
@@ -178,8 +208,8 @@ def surface_at(triangles: Triangles, triangle: int, b: float, c: float, directio
     corners = triangles.corners
     edge1, edge2 = _row(corners, triangle, 1), _row(corners, triangle, 2)
     face_normal = normalise(cross(edge1, edge2))
-    front = dot(face_normal, direction) < 0.0
-    if not front:
+    towards = dot(face_normal, direction) < 0.0
+    if not towards:
         face_normal = scale(face_normal, -1.0)
     normal = normalise(interpolated(triangles.normals, triangle, b, c))
     if dot(normal, face_normal) < 0.0:
@@ -189,6 +219,7 @@ def surface_at(triangles: Triangles, triangle: int, b: float, c: float, directio
         normal = face_normal
     u, v = texture_coordinates(triangles, triangle, b, c)
     point = interpolated(corners, triangle, b, c)
+    front = towards != triangles.mirrored[triangle]
     return Surface(point, face_normal, normal, lift(corners, triangle), u, v, triangles.material[triangle], front)
 
 
@@ -240,12 +271,12 @@ def _joined(parts: Sequence[NDArray[np.floating]], shape: tuple[int, int]) -> ND
     return np.concatenate([*parts, np.zeros((0, *shape), np.float32)])
 
 
-def product(vectors: NDArray[np.floating], matrix: Float64) -> Float64:
+def _product(vectors: NDArray[np.floating], matrix: Float64) -> Float64:
     """`matrix` times each of `vectors` (..., 3), without BLAS: its rounding may hang on the number of threads."""
     return vectors[..., :1] * matrix[:, 0] + vectors[..., 1:2] * matrix[:, 1] + vectors[..., 2:] * matrix[:, 2]
 
 
-def unit(vectors: NDArray[np.floating]) -> NDArray[np.floating]:
+def _unit(vectors: NDArray[np.floating]) -> NDArray[np.floating]:
     """`vectors` (..., 3) at length 1; those of length 0 as they are."""
     length = np.sqrt(np.square(vectors).sum(-1, keepdims=True))
     return vectors / np.where(length > 0.0, length, 1.0)

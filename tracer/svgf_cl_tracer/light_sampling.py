@@ -72,7 +72,7 @@ class Lights(NamedTuple):
         brightness = np.array([np.dot(LUMINANCE, material.emission_at(time)) for material in materials])
         shining = np.flatnonzero(brightness[triangles.material] > 0.0)
         edges = triangles.corners[shining, 1:].astype(np.float64)
-        normals = np.cross(edges[:, 0], edges[:, 1])
+        normals = np.cross(edges[:, 0], edges[:, 1]) * np.where(triangles.mirrored[shining], -1.0, 1.0)[:, None]
         areas = np.linalg.norm(normals, axis=1) / 2.0
         lamps, normals, areas = shining[areas > 0.0], normals[areas > 0.0], areas[areas > 0.0]
         power = brightness[triangles.material[lamps]] * areas

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,11 +10,10 @@ import PIL.Image
 from numpy.typing import NDArray
 
 from .errors import SceneError
-from .geometry import Instance, cofactors, product, unit
+from .geometry import Instance
 from .materials import Colour, Material
-from .motion import Keyframes, Motion
+from .motion import Motion
 from .textures import Image
-from .vectors import Float64
 
 # Of all textures of a file, 1 GB in memory: a few kilobytes may stand for as much.
 MAX_PIXELS = 2**28
@@ -46,25 +45,9 @@ class Mesh:
 
 def instance(mesh: Mesh, motion: Motion, material: Material) -> Instance:
     """`mesh` on its way through the world; at its place there where it does not move."""
-    transform = motion.matrix(0.0)
-    # A mirrored object turns its triangles over, and with them the side that emits light.
-    faces = mesh.faces if np.linalg.det(transform[:3, :3]) > 0.0 else mesh.faces[:, ::-1]
-    moving = is_moving(motion)
-    if not moving:
-        mesh = _placed(mesh, transform)
-    normals, uv, colours = (None if each is None else each[faces] for each in (mesh.normals, mesh.uv, mesh.colours))
-    return Instance(mesh.vertices[faces], material, normals, uv, motion if moving else None, colours)
-
-
-def _placed(mesh: Mesh, transform: Float64) -> Mesh:
-    vertices = product(mesh.vertices, transform[:3, :3]) + transform[:3, 3]
-    normals = None if mesh.normals is None else unit(product(mesh.normals, cofactors(transform[:3, :3])))
-    return replace(mesh, vertices=vertices, normals=normals)
-
-
-def is_moving(motion: Motion) -> bool:
-    """Whether anything in `motion` changes over time."""
-    return any(isinstance(link, Keyframes) for link in motion.links)
+    normals, uv, colours = (v if v is None else v[mesh.faces] for v in (mesh.normals, mesh.uv, mesh.colours))
+    found = Instance(mesh.vertices[mesh.faces], material, normals, uv, motion, colours)
+    return found if motion.changes else found.at_rest(0.0)
 
 
 def colour(values: Any) -> Colour:

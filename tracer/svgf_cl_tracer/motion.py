@@ -11,6 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from .errors import SceneError
 from .vectors import Float64
 
+# In place of a size of 0, so that what has none keeps its directions: a lamp still shines along its axis.
+SPECK = 1e-30
+
 
 @dataclass(frozen=True, eq=False)
 class Track:
@@ -46,6 +49,12 @@ class Track:
             raise SceneError("keyframes: expected finite values at finite, ascending times")
         object.__setattr__(self, "times", times)
         object.__setattr__(self, "values", values)
+
+    @property
+    def changes(self) -> bool:
+        """Whether it is ever another one: exporters write keyframes for what stands still too."""
+        values = np.asarray(self.values)
+        return bool((values != values[0]).any())
 
     def at(self, time: float) -> Float64:
         """The values (C,) at `time` in seconds."""
@@ -93,13 +102,19 @@ class Keyframes:
     rotation: Track | None = None
     scale: Track | None = None
 
+    @property
+    def changes(self) -> bool:
+        """Whether anything in it changes over time."""
+        return any(track is not None and track.changes for track in (self.translation, self.rotation, self.scale))
+
     def matrix(self, time: float) -> Float64:
         """The transform (4, 4) at `time` in seconds: scaled, then turned, then moved."""
         matrix = np.eye(4)
         if self.rotation is not None:
             matrix[:3, :3] = rotation_matrix(self.rotation.rotation_at(time))
         if self.scale is not None:
-            matrix[:3, :3] *= self.scale.at(time)
+            scale = self.scale.at(time)
+            matrix[:3, :3] *= np.where(scale == 0.0, SPECK, scale)
         if self.translation is not None:
             matrix[:3, 3] = self.translation.at(time)
         return matrix
@@ -131,6 +146,11 @@ class Motion:
         here, there = np.eye(4), np.eye(4)
         here[:3, 3], there[:3, 3] = pivot, -np.asarray(pivot, np.float64)
         return cls([here, Keyframes(rotation=Track(times, quaternions, repeats=repeats)), there])
+
+    @property
+    def changes(self) -> bool:
+        """Whether anything in it changes over time."""
+        return any(isinstance(link, Keyframes) and link.changes for link in self.links)
 
     def matrix(self, time: float) -> Float64:
         """The transform (4, 4) into the world at `time` in seconds."""

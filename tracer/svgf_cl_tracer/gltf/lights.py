@@ -15,7 +15,7 @@ import numpy as np
 
 from svgf_cl_tracer.camera import Camera, vector
 from svgf_cl_tracer.lights import PointLight, Sun
-from svgf_cl_tracer.meshes import colour, is_moving
+from svgf_cl_tracer.meshes import colour
 from svgf_cl_tracer.model import Light
 from svgf_cl_tracer.motion import Motion
 
@@ -45,7 +45,7 @@ def _light(document: dict[str, Any], motion: Motion) -> PointLight | Sun:
         outer = math.degrees(cone.get("outerConeAngle", math.pi / 4.0))
     reach = document.get("range", math.inf)
     light = PointLight((0.0, 0.0, 0.0), strength, (0.0, 0.0, -1.0), inner, outer, reach, motion)
-    if is_moving(motion):
+    if motion.changes:
         return light
     position, direction = light.placed(0.0)
     return replace(light, position=vector(position), direction=vector(direction), motion=None)

@@ -6,8 +6,6 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from svgf_cl_tracer.meshes import is_moving
-
 from .extensions import INVISIBLE, READ, WITH_FALLBACK
 from .file import Gltf
 from .materials import base_texture
@@ -176,7 +174,7 @@ def _of_cameras(gltf: Gltf, nodes: Nodes) -> Iterator[str]:
         yield f"cameras that are not perspective are not read: {others}; the view is not theirs"
     if len(perspective) > 1:
         yield f"cameras: the first perspective one of {len(perspective)} is used"
-    if perspective and is_moving(nodes.motion(perspective[0])):
+    if perspective and nodes.motion(perspective[0]).changes:
         yield "the camera moves in the file; it stands here as at time 0"
 
 
