@@ -55,8 +55,9 @@ def good_sequence(scene: str, shape: Shape, count: int) -> list[Taken]:
             for number, frame in enumerate(frames)
         ]
     length = BUILTIN[scene].frames if scene in BUILTIN else 24
-    world = open_scene(scene, None)
-    shot = Shot(world, shape, length, None if scene in BUILTIN else orbit(world.camera_path.at(0.0)))
+    shot = Shot(open_scene(scene, None), shape, length)
+    if scene not in BUILTIN:
+        shot = replace(shot, camera_path=orbit(shot.camera(0)))
     return [taken(shot, number) for number in range(length // 2 - count // 2, length // 2 - count // 2 + count)]
 
 

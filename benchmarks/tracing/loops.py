@@ -16,8 +16,8 @@ from svgf_cl_tracer.light_sampling import outside_radiance, sample_light
 from svgf_cl_tracer.materials import base_colour, emitted_radiance
 from svgf_cl_tracer.paths import Draws, Paths
 from svgf_cl_tracer.sampling import random4
-from svgf_cl_tracer.scene import Tables
 from svgf_cl_tracer.shading import FIRST_SURFACE_DRAW
+from svgf_cl_tracer.surroundings import Tables
 from svgf_cl_tracer.trees import MISS, Hits
 from svgf_cl_tracer.vec3 import add, row, scale
 from svgf_cl_tracer.vectors import Float64

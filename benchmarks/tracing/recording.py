@@ -17,7 +17,7 @@ from benchmarks.tracing.watching import watched
 from svgf_cl_tracer import Shot, integrator, render_frame
 from svgf_cl_tracer.camera import Lens
 from svgf_cl_tracer.paths import Before, Draws, Paths
-from svgf_cl_tracer.scene import Tables
+from svgf_cl_tracer.surroundings import Tables
 from svgf_cl_tracer.trees import FAR, Hits, Tree, Trees
 from svgf_cl_tracer.vectors import Float32
 

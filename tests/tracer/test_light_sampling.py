@@ -15,8 +15,9 @@ from svgf_cl_tracer.light_sampling import Lights, lamp_density, mis_weight, outs
 from svgf_cl_tracer.lights import PointLight, Sun
 from svgf_cl_tracer.materials import Material, Materials
 from svgf_cl_tracer.motion import Motion, Track
-from svgf_cl_tracer.scene import Scene, Tables
+from svgf_cl_tracer.scene import Scene
 from svgf_cl_tracer.sky import Environment, SkyTable
+from svgf_cl_tracer.surroundings import Tables
 from svgf_cl_tracer.vec3 import Vec3
 from tests.tracer.estimates import under_rectangle
 
@@ -60,7 +61,7 @@ def samples(tables: Tables, point: Vec3 = ORIGIN) -> tuple[Floats, Floats, Float
 def tables(
     instances: Sequence[Instance], lights: Sequence[Sun | PointLight] = (), sky: Environment | None = None
 ) -> Tables:
-    return Scene(instances, lights=lights, sky=sky).at(0.0).tables
+    return Scene(instances, lights=lights, sky=sky).around((0.0, 0.0, 0.0)).at(0.0).tables
 
 
 def assert_irradiance(found: Tables, expected: Sequence[float], point: Vec3 = ORIGIN) -> None:
@@ -233,4 +234,4 @@ def test_a_lamp_that_is_dimmed_and_a_light_that_moves_change_with_time(ground: I
     scene = Scene([ground, ceiling(switched)], lights=[passing])
     shine = 4 * math.pi * under_rectangle(2, 0.8, 1.5)
     for time, expected in ((0.0, shine + 1.0), (0.5, 0.5 * shine + 4 / 9), (1.0, 0.25), (9.0, 0.25)):
-        assert_irradiance(scene.at(time).tables, [expected] * 3)
+        assert_irradiance(scene.around((0.0, 0.0, 0.0)).at(time).tables, [expected] * 3)

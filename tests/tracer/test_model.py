@@ -26,7 +26,9 @@ def test_a_motion_carries_what_hangs_on_its_nodes_on_top_of_their_own() -> None:
     np.testing.assert_allclose(handle.matrix(0.5) @ (1, 1, 1, 1), (3, 2, 1, 1))
     assert floor is None
     np.testing.assert_allclose(carried.lights[0].light.placed(0.5)[0], (1, 1, 0))
-    assert carried.lights[1] is sun
+    np.testing.assert_allclose(carried.lights[1].light.direction_at(0.5), (0, 1, 0))
+    turned = model.carried(frozenset(["door"]), Motion.turning((9, 9, 9), (0, 0, 1), [0, 1], [0, 90]))
+    np.testing.assert_allclose(turned.lights[1].light.direction_at(1.0), (-1, 0, 0), atol=1e-12)
 
 
 def test_objects_of_one_material_still_share_it_when_painted() -> None:

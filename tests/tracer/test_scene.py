@@ -19,6 +19,7 @@ from svgf_cl_tracer.sky import Environment
 
 BLACK, WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 SLIDE = Motion.sliding([0.0, 1.0], [(0, 0, 0), (4, 0, 0)])
+ORIGIN = (0.0, 0.0, 0.0)
 DIMMED = Track([0.0, 1.0], [[1.0], [0.5]])
 
 Quad = Callable[..., Instance]
@@ -81,16 +82,16 @@ def test_a_scene_changes_where_anything_but_the_camera_does(floor: Floor, quad: 
 
 def test_what_does_not_change_is_made_once(floor: Floor, quad: Quad) -> None:
     still = Scene([floor(Material())], sky=WHITE)
-    assert still.at(0.0) is still.at(1.0)
+    assert still.around(ORIGIN).at(0.0) is still.around(ORIGIN).at(1.0)
     body = quad((0, 0, 0), (1, 0, 0), (0, 1, 0), None, SLIDE)
     moving = Scene([body, floor(Material())], sky=WHITE)
-    assert moving.at(0.0).trees.trees[0] is moving.at(1.0).trees.trees[0]
+    assert moving.around(ORIGIN).at(0.0).trees.trees[0] is moving.around(ORIGIN).at(1.0).trees.trees[0]
 
 
 def test_triangles_keep_their_numbers_while_they_move(floor: Floor, quad: Quad) -> None:
     """Those at rest come first, and the scene tells where each was at any time."""
     body = quad((0, 0, 0), (1, 0, 0), (0, 1, 0), None, SLIDE)
-    scene = Scene([body, floor(Material()), body], sky=WHITE)
+    scene = Scene([body, floor(Material()), body], sky=WHITE).around(ORIGIN)
     for time, shift in ((0.0, 0.0), (0.5, 2.0), (2.0, 4.0)):
         triangles = scene.at(time).tables.triangles
         np.testing.assert_array_equal(triangles.corners[scene.first_moving :], scene.corners_at(time))
@@ -104,17 +105,17 @@ def test_paths_end_at_lamps_and_glass_unless_light_comes_from_outside(floor: Flo
     lamps = [quad((0, y, 0), (1, 0, 0), (0, 0, 1), shining, SLIDE) for y in (2, 3)]
     glass = quad((0, 9, 0), (1, 0, 0), (0, 0, 1), Material(transmissive=True))
     parts = [floor(Material()), *lamps, glass]
-    first, second = Scene(parts).at(0.5).goals
+    second, first = Scene(parts).around(ORIGIN).at(0.5).goals
     np.testing.assert_allclose(first, [(2, 2, 0), (3, 3, 1)])
     np.testing.assert_allclose(second, [(0, 9, 0), (1, 9, 1)])
     for light in ({"sky": WHITE}, {"lights": [Sun((0, 1, 0), WHITE)]}):
-        assert np.isinf(Scene(parts, **light).at(0.5).goals).all()
+        assert np.isinf(Scene(parts, **light).around(ORIGIN).at(0.5).goals).all()
 
 
 def test_brightness_is_that_of_the_time(floor: Floor) -> None:
     scene = Scene([floor(Material(emission=(2, 4, 6), brightness=DIMMED)), floor(Material(emission=WHITE))])
     for time, factor in ((0.0, 1.0), (0.5, 0.75), (3.0, 0.5)):
-        emission = scene.at(time).tables.materials.emission
+        emission = scene.around(ORIGIN).at(time).tables.materials.emission
         np.testing.assert_allclose(emission, [np.multiply((2, 4, 6), factor), WHITE])
 
 

@@ -26,7 +26,7 @@ Rows = NDArray[np.float32]
 
 
 def trees(instances: Sequence[Instance], time: float = 0.0) -> Trees:
-    return Scene(instances, sky=(1, 1, 1)).at(time).trees
+    return Scene(instances, sky=(1, 1, 1)).around((0.0, 0.0, 0.0)).at(time).trees
 
 
 def rows(*vectors: tuple[float, float, float]) -> Rows:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from .compiled import compiled
 from .errors import SceneError
+from .motion import Motion
 from .sampling import on_circle
 from .vec3 import Vec3, add, dot, normalise, scale, subtract
 from .vectors import Float64
@@ -82,6 +83,11 @@ class Camera:
         up = rest[1] if len(rest) == 2 else cls.up
         return cls(vector(position), vector(look_at), vector(up), fov_y)
 
+    def relative_to(self, origin: Vector) -> Camera:
+        """The same in positions relative to `origin`."""
+        position, look_at = np.subtract(self.position, origin), np.subtract(self.look_at, origin)
+        return replace(self, position=vector(position), look_at=vector(look_at))
+
     def basis(self) -> Float64:
         """Rows right, up, forward: an orthonormal (3, 3) matrix that turns world directions into the camera's."""
         forward = np.subtract(self.look_at, self.position)
@@ -90,18 +96,22 @@ class Camera:
         right /= np.linalg.norm(right)
         return np.stack([right, np.cross(right, forward), forward])
 
-    def lens(self, shape: tuple[int, int]) -> Lens:
-        """What compiled loops ask of the camera for a (height, width) image."""
+    def lens(self, shape: tuple[int, int], clearance: float = 0.0) -> Lens:
+        """What compiled loops ask of the camera for a (height, width) image; nothing is within `clearance` of it."""
         height, width = shape
         right, up, forward = (vector(axis) for axis in self.basis())
         focus = math.dist(self.position, self.look_at)
         scale = height / (2.0 * math.tan(math.radians(self.fov_y) / 2.0))
         middle = (width - 1) / 2.0, (height - 1) / 2.0
-        return Lens(vector(self.position), right, up, forward, scale, *middle, self.aperture / 2.0, focus)
+        start = max(clearance - self.aperture, 0.0)
+        return Lens(vector(self.position), right, up, forward, scale, *middle, self.aperture / 2.0, focus, start)
 
 
 class Lens(NamedTuple):
-    """A camera and its image: axes, pixels in a unit at distance 1, the image's middle, the lens' radius and focus."""
+    """A camera and its image: axes, pixels in a unit at distance 1, the image's middle, the lens' radius and focus.
+
+    Rays start at the distance `start`: single precision gets the less of their way wrong the shorter it is.
+    """
 
     position: Vec3
     right: Vec3
@@ -112,6 +122,7 @@ class Lens(NamedTuple):
     middle_y: float
     radius: float
     focus: float
+    start: float
 
 
 @compiled
@@ -123,10 +134,12 @@ def ray_through(lens: Lens, x: float, y: float, u: float, v: float) -> tuple[Vec
     across, above = (x - lens.middle_x) / lens.scale, (lens.middle_y - y) / lens.scale
     way = add(add(scale(lens.right, across), scale(lens.up, above)), lens.forward)
     if lens.radius == 0.0:
-        return lens.position, normalise(way)
+        direction = normalise(way)
+        return add(lens.position, scale(direction, lens.start)), direction
     radius, (cosine, sine) = lens.radius * math.sqrt(u), on_circle(v)
     offset = add(scale(lens.right, radius * cosine), scale(lens.up, radius * sine))
-    return add(lens.position, offset), normalise(subtract(scale(way, lens.focus), offset))
+    direction = normalise(subtract(scale(way, lens.focus), offset))
+    return add(lens.position, add(offset, scale(direction, lens.start))), direction
 
 
 @compiled
@@ -191,6 +204,31 @@ class CameraPath:
     def at_frame(self, number: float, frames: int) -> Camera:
         """The camera of frame `number`, from 0, in a sequence of so many that covers the whole path."""
         return self.at(number / max(frames - 1, 1))
+
+
+@dataclass(frozen=True, eq=False)
+class CarriedCamera:
+    """A camera that something carries through the world by the clock, whatever the length of the sequence.
+
+    Parameters
+    ----------
+    camera : Camera
+        In the space of what carries it.
+    motion : Motion
+        From that space into the world. Its sizes move the camera, but change neither focus nor lens.
+    """
+
+    camera: Camera
+    motion: Motion
+
+    def at_time(self, time: float) -> Camera:
+        """The camera in the world at `time` in seconds."""
+        matrix = self.motion.matrix(time)
+        position = matrix[:3, :3] @ self.camera.position + matrix[:3, 3]
+        _, *axes = self.camera.basis()
+        up, forward = (axis / np.linalg.norm(axis) for axis in axes @ matrix[:3, :3].T)
+        look_at = position + math.dist(self.camera.position, self.camera.look_at) * forward
+        return replace(self.camera, position=vector(position), look_at=vector(look_at), up=vector(up))
 
 
 def _catmull_rom(points: Float64, s: float) -> Float64:

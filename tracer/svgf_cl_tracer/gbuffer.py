@@ -9,7 +9,7 @@ from .camera import Lens, project
 from .compiled import compiled
 from .geometry import Surface, interpolated
 from .paths import Before, Features
-from .scene import Tables
+from .surroundings import Tables
 from .vec3 import Vec3, dot, subtract
 
 

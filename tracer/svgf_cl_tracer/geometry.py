@@ -93,6 +93,12 @@ class Instance:
         corners = self.corners_at(time)[:, order]
         return replace(self, corners=corners, normals=normals, uv=uv, colours=colours, motion=None)
 
+    def relative_to(self, origin: Vec3) -> Instance:
+        """The same in positions relative to `origin`."""
+        if self.motion is None:
+            return replace(self, corners=self.corners - np.array(origin, np.float64))
+        return replace(self, motion=self.motion.relative_to(origin))
+
     @cached_property
     def _box(self) -> Float64:
         return bounds(self.corners)

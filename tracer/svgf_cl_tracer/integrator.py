@@ -14,8 +14,8 @@ import numpy as np
 from .boxes import passing
 from .camera import Lens
 from .paths import DIRECT_DIFFUSE, INDIRECT_DIFFUSE, Aim, Before, Draws, Features, Paths, ShadowRays
-from .scene import Moment
 from .shading import deposit, shade, start_paths
+from .surroundings import Moment
 from .trees import FAR, MISS, Hits, Trees
 from .vectors import Float32, Float64
 

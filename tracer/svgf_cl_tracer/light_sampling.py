@@ -85,7 +85,7 @@ class Lights(NamedTuple):
             normals / (2.0 * areas[:, None]),
             _cumulative(power),
             brightness / (power.sum() or 1.0),
-            _rows([np.divide(s.direction_to_light, np.linalg.norm(s.direction_to_light)) for s in suns]),
+            _rows([sun.direction_at(time) for sun in suns]),
             _rows([s.irradiance for s in suns]),
             _rows([s.irradiance for s in suns]) / np.maximum(np.pi * np.sin(radius) ** 2, TINY)[:, None],
             np.cos(radius),
@@ -210,7 +210,7 @@ def _sample_point(lights: Lights, point: Vec3, u: float) -> LightSample:
     """Source of the falloff: glTF, KHR_lights_punctual."""
     number = _pick(lights.point_chances, u)
     way = subtract(row(lights.point_position, number), point)
-    squared = max(dot(way, way), 1e-12)
+    squared = max(dot(way, way), 1e-24)
     distance, direction = math.sqrt(squared), normalise(way)
     strength = 1.0 / (squared * _chance(lights.point_chances, number))
     reach = lights.point_reach[number]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .errors import SceneError
 from .materials import Colour
 from .motion import Motion
+from .vec3 import Vec3
 from .vectors import Float64
 
 
@@ -25,6 +26,8 @@ class Sun:
     angular_radius : float
         Half the angle under which it is seen, in degrees, 0 <= angular_radius < 90. At 0 it is seen neither by the
         camera nor in a mirror.
+    motion : Motion, optional
+        Turns the direction.
 
     Raises
     ------
@@ -35,6 +38,7 @@ class Sun:
     direction_to_light: Colour
     irradiance: Colour
     angular_radius: float = 0.25
+    motion: Motion | None = None
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.direction_to_light).all() and np.any(self.direction_to_light)):
@@ -43,6 +47,15 @@ class Sun:
             raise SceneError(f"sun: expected an irradiance >= 0, got {self.irradiance}")
         if not 0.0 <= self.angular_radius < 90.0:
             raise SceneError(f"sun: expected an angular radius in degrees in [0, 90), got {self.angular_radius}")
+
+    def relative_to(self, origin: Vec3) -> Sun:
+        """The same: it is equally far from everywhere."""
+        return self
+
+    def direction_at(self, time: float) -> Float64:
+        """The unit vector (3,) towards the middle of the disc at `time` in seconds."""
+        direction = np.array(self.direction_to_light, np.float64)
+        return _unit(direction if self.motion is None else self.motion.matrix(time)[:3, :3] @ direction)
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,10 +103,22 @@ class PointLight:
         if not self.reach > 0.0:
             raise SceneError(f"light: expected a reach above 0, got {self.reach}")
 
+    def relative_to(self, origin: Vec3) -> PointLight:
+        """The same in positions relative to `origin`."""
+        if self.motion is None:
+            x, y, z = np.subtract(self.position, origin).tolist()
+            return replace(self, position=(x, y, z))
+        return replace(self, motion=self.motion.relative_to(origin))
+
     def placed(self, time: float) -> tuple[Float64, Float64]:
         """Position (3,) and unit direction (3,) in the world at `time` in seconds."""
         position, direction = np.array(self.position, np.float64), np.array(self.direction, np.float64)
         if self.motion is not None:
             matrix = self.motion.matrix(time)
             position, direction = matrix[:3, :3] @ position + matrix[:3, 3], matrix[:3, :3] @ direction
-        return position, direction / np.linalg.norm(direction)
+        return position, _unit(direction)
+
+
+def _unit(direction: Float64) -> Float64:
+    unit: Float64 = direction / np.linalg.norm(direction)
+    return unit

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from .camera import CameraPath
 from .description import FILE_NAME, described_scene
 from .errors import SceneError
 from .materials import Colour
@@ -32,8 +31,8 @@ def load_scene(
     Returns
     -------
     Scene
-        One instance for each primitive of each node, ids from 1. Its camera path is the one described, else the file's
-        camera standing still, else one that frames everything.
+        One instance for each primitive of each node, ids from 1. Its camera path is the one described, else that of
+        the file's camera, else one that frames everything.
 
     Raises
     ------
@@ -51,7 +50,7 @@ def load_scene(
             [item.instance for item in model.objects],
             lights=[item.light for item in model.lights],
             sky=sky,
-            camera_path=CameraPath.static(model.camera) if model.camera else None,
+            camera_path=model.eye.path if model.eye else None,
         )
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from error

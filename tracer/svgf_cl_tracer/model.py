@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
-from .camera import Camera
+from .camera import CameraPath, CarriedCamera
 from .geometry import Instance
 from .lights import PointLight, Sun
 from .materials import Material
 from .motion import Motion
+
+Thing = TypeVar("Thing", "Object", "Light", "Eye")
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,10 +44,25 @@ class Light:
     nodes: tuple[str, ...]
 
     def carried(self, motion: Motion) -> Light:
-        """The light with `motion` on top of its own; the sun stays where it is."""
-        if isinstance(self.light, Sun):
-            return self
+        """The light with `motion` on top of its own."""
         return replace(self, light=replace(self.light, motion=_on_top(motion, self.light.motion)))
+
+
+@dataclass(frozen=True, eq=False)
+class Eye:
+    """A camera, and the names of its node and those above it, outermost first."""
+
+    camera: CarriedCamera
+    nodes: tuple[str, ...]
+
+    @property
+    def path(self) -> CameraPath | CarriedCamera:
+        """The way it takes."""
+        return self.camera if self.camera.motion.changes else CameraPath.static(self.camera.at_time(0.0))
+
+    def carried(self, motion: Motion) -> Eye:
+        """The camera with `motion` on top of its own."""
+        return replace(self, camera=replace(self.camera, motion=_on_top(motion, self.camera.motion)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,15 +71,22 @@ class Model:
 
     objects: list[Object]
     lights: list[Light] = field(default_factory=list)
-    camera: Camera | None = None
+    eye: Eye | None = None
+
+    @property
+    def nodes(self) -> set[str]:
+        """What the nodes are called that anything hangs on."""
+        things = [item.nodes for item in self.objects] + [item.nodes for item in self.lights]
+        return {name for names in (*things, self.eye.nodes if self.eye else ()) for name in names}
 
     def carried(self, nodes: frozenset[str], motion: Motion) -> Model:
         """The model with `motion` on top of what moves those nodes and all that hangs on them."""
-        return replace(
-            self,
-            objects=[item.carried(motion) if nodes.intersection(item.nodes) else item for item in self.objects],
-            lights=[item.carried(motion) if nodes.intersection(item.nodes) else item for item in self.lights],
-        )
+
+        def carry(item: Thing) -> Thing:
+            return item.carried(motion) if nodes.intersection(item.nodes) else item
+
+        eye = None if self.eye is None else carry(self.eye)
+        return replace(self, objects=[*map(carry, self.objects)], lights=[*map(carry, self.lights)], eye=eye)
 
     def painted(self, paint: Callable[[str, Material], Material]) -> Model:
         """The model with other materials: what `paint` makes of each one's name and itself."""

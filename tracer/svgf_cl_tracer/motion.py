@@ -105,7 +105,12 @@ class Keyframes:
     @property
     def changes(self) -> bool:
         """Whether anything in it changes over time."""
-        return any(track is not None and track.changes for track in (self.translation, self.rotation, self.scale))
+        return any(track.changes for track in self.tracks)
+
+    @property
+    def tracks(self) -> list[Track]:
+        """Those there are."""
+        return [track for track in (self.translation, self.rotation, self.scale) if track is not None]
 
     def matrix(self, time: float) -> Float64:
         """The transform (4, 4) at `time` in seconds: scaled, then turned, then moved."""
@@ -143,14 +148,24 @@ class Motion:
         """Rotation about `axis` (3,) through `pivot` (3,) by `degrees` (n,) at `times` (n,); less than 180 a step."""
         half = np.radians(np.asarray(degrees, np.float64))[:, None] / 2.0
         quaternions = np.hstack([_unit(np.asarray(axis, np.float64)) * np.sin(half), np.cos(half)])
-        here, there = np.eye(4), np.eye(4)
-        here[:3, 3], there[:3, 3] = pivot, -np.asarray(pivot, np.float64)
-        return cls([here, Keyframes(rotation=Track(times, quaternions, repeats=repeats)), there])
+        turn = Keyframes(rotation=Track(times, quaternions, repeats=repeats))
+        return cls([translation(pivot), turn, translation(-np.asarray(pivot, np.float64))])
+
+    def relative_to(self, origin: ArrayLike) -> Motion:
+        """The same way where positions in the world are relative to `origin` (3,)."""
+        return Motion([translation(-np.asarray(origin, np.float64)), *self.links])
 
     @property
     def changes(self) -> bool:
         """Whether anything in it changes over time."""
         return any(isinstance(link, Keyframes) and link.changes for link in self.links)
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """When it begins and ends to change, in seconds; (0, 0) where it never does."""
+        tracks = [track for link in self.links if isinstance(link, Keyframes) for track in link.tracks if track.changes]
+        times = [time for track in tracks for time in np.asarray(track.times)[[0, -1]]]
+        return (float(min(times)), float(max(times))) if times else (0.0, 0.0)
 
     def matrix(self, time: float) -> Float64:
         """The transform (4, 4) into the world at `time` in seconds."""
@@ -158,6 +173,13 @@ class Motion:
         for link in self.links:
             result = result @ (link.matrix(time) if isinstance(link, Keyframes) else np.asarray(link, np.float64))
         return result
+
+
+def translation(way: ArrayLike) -> Float64:
+    """The transform (4, 4) that moves everything by `way` (3,)."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = way
+    return matrix
 
 
 def rotation_matrix(quaternion: Float64) -> Float64:

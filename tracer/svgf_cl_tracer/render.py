@@ -18,9 +18,10 @@ from .fingerprint import fingerprint
 from .integrator import trace
 from .paths import Aim, Before, Draws, Features, Radiance
 from .sampling import pixel_jitter, stream_key
-from .scene import Moment
 from .shading import pick_moments, sum_up
 from .shot import Shot
+from .surroundings import Moment
+from .vec3 import Vec3
 from .vectors import Float32
 
 # Pixels that one task traces at once: few enough for what Embree and the compiled loops hand to each other to stay in a
@@ -167,16 +168,16 @@ def _exposures(shot: Shot, number: int) -> list[Exposure]:
     shutter = shot.camera(number).shutter
     moving = shot.scene.changes or shot.camera(number) != shot.camera(number + shutter)
     opened = [shutter * (index + 0.5) / MOMENTS for index in range(MOMENTS)] if shutter and moving else [0.0]
-    return [_exposure(shot, number + offset, max(number - 1, 0) + offset) for offset in opened]
+    origin = shot.origin(number)
+    return [_exposure(shot, origin, number + offset, max(number - 1, 0) + offset) for offset in opened]
 
 
-def _exposure(shot: Shot, now: float, before: float) -> Exposure:
-    scene, shape = shot.scene, shot.shape
-    return Exposure(
-        scene.at(shot.time(now)),
-        shot.camera(now).lens(shape),
-        Before(shot.camera(before).lens(shape), scene.first_moving, scene.corners_at(shot.time(before))),
-    )
+def _exposure(shot: Shot, origin: Vec3, now: float, before: float) -> Exposure:
+    surroundings = shot.scene.around(origin)
+    moment, corners_before = surroundings.at(shot.time(now)), surroundings.corners_at(shot.time(before))
+    camera, camera_before = (shot.camera(number).relative_to(origin) for number in (now, before))
+    lens = camera.lens(shot.shape, moment.trees.clearance(camera.position))
+    return Exposure(moment, lens, Before(camera_before.lens(shot.shape), surroundings.first_moving, corners_before))
 
 
 def in_threads(function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:

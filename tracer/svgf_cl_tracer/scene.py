@@ -1,42 +1,25 @@
-"""The scene: what is in it, and what that makes at a moment, ready to be traced."""
+"""The scene: what is in it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from functools import cached_property
 
 import numpy as np
 
-from .boxes import EVERYWHERE, bounds
-from .camera import Camera, CameraPath, vector
+from .boxes import bounds
+from .camera import Camera, CameraPath, CarriedCamera, vector
 from .errors import SceneError
-from .geometry import Instance, Triangles, corners_of
-from .light_sampling import Lights
+from .geometry import Instance
 from .lights import PointLight, Sun
 from .materials import Colour, Materials
-from .sky import Environment, SkyTable, sky_table
-from .trees import Tree, Trees
-from .vectors import Float32, Float64
+from .sky import Environment, sky_table
+from .surroundings import Surroundings
+from .vec3 import Vec3
+from .vectors import Float64
 
-
-class Tables(NamedTuple):
-    """Everything about a scene at one moment that compiled loops look up."""
-
-    triangles: Triangles
-    materials: Materials
-    lights: Lights
-    sky: SkyTable
-
-
-class Moment(NamedTuple):
-    """A scene at one time.
-
-    `goals` are boxes (2, 3): paths that may not be scattered any more bring no light unless they pass one of them.
-    """
-
-    tables: Tables
-    trees: Trees
-    goals: tuple[Float64, ...]
+# At how many moments of its motion it is asked where a thing is that a camera is to see.
+MOMENTS = 17
 
 
 class Scene:
@@ -50,7 +33,7 @@ class Scene:
         Lights that are no triangles.
     sky : (r, g, b) or Environment, optional
         Radiance that comes from everywhere outside the scene, linear, >= 0; none where absent.
-    camera_path : CameraPath, optional
+    camera_path : CameraPath or CarriedCamera, optional
         The default view; a still camera that frames everything where absent.
 
     Raises
@@ -65,7 +48,7 @@ class Scene:
         *,
         lights: Sequence[Sun | PointLight] = (),
         sky: Colour | Environment | None = None,
-        camera_path: CameraPath | None = None,
+        camera_path: CameraPath | CarriedCamera | None = None,
     ) -> None:
         self.instances = tuple(instance for instance in instances if len(instance.corners))
         self.lights, self.sky = tuple(lights), sky
@@ -74,93 +57,61 @@ class Scene:
         if constant is not None and not (np.isfinite(constant).all() and min(constant) >= 0.0):
             raise SceneError(f"sky: expected three radiances >= 0, got {sky}")
         self.camera_path = camera_path or CameraPath.static(_framing(self.instances))
-        self._prepare()
         if not self._shines():
             raise SceneError("scene: nothing in it emits light; give it a sky, for example --sky 1,1,1")
+        self.materials = list({id(instance.material): instance.material for instance in self.instances}.values())
+        self.looks, self.sky_table = Materials.of(self.materials), sky_table(sky)
+        self._latest: Surroundings | None = None
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickled as what it is made of: Embree's trees cannot be sent to another process."""
         return _make, (self.instances, self.lights, self.sky, self.camera_path)
 
-    def at(self, time: float) -> Moment:
-        """The scene at `time` in seconds."""
-        if self._still is not None:
-            return self._still
-        triangles = self._triangles.moved(self._moving, time) if self._moving else self._triangles
-        trees = [*self._trees, *self._grow(self._moving, triangles, self.first_moving)]
-        materials = self._materials._replace(
-            emission=np.array([np.multiply(m.emission, m.brightness_at(time)) for m in self._kinds])
-        )
-        lights = Lights.of(triangles, self._kinds, self.lights, self._sky, time)
-        tables = Tables(triangles, materials, lights, self._sky)
-        return Moment(tables, Trees(trees, triangles, materials), self._goals(time))
+    def around(self, origin: Vec3) -> Surroundings:
+        """The scene in positions relative to `origin`; what was made for the latest one is kept."""
+        latest = self._latest
+        if latest is None or latest.origin != origin:
+            self._latest = latest = Surroundings(self, origin)
+        return latest
 
-    def corners_at(self, time: float) -> Float32:
-        """First corner and edges (M, 3, 3) of the triangles that move, from `first_moving` on, at `time` in seconds."""
-        return corners_of(self._moving, time)
+    def nearest(self, point: Vec3, time: float) -> Float64:
+        """The point (3,) of the box around everything at `time` in seconds that is nearest to `point`."""
+        low, high = self._box_at(time)
+        return np.clip(point, low, high)
 
-    @property
+    @cached_property
+    def detail(self) -> float:
+        """How small things are, of those that move in their own space: the median of all triangles' shortest edges."""
+        corners = [instance.corners for instance in self.instances]
+        edges = [np.linalg.norm(part - np.roll(part, 1, axis=1), axis=-1).min(1) for part in corners]
+        return float(np.median(np.concatenate(edges)))
+
+    @cached_property
     def changes(self) -> bool:
         """Whether anything but the camera moves or changes."""
-        return self._still is None
+        moves = any(thing.motion is not None for thing in (*self.instances, *self.lights))
+        return moves or any(material.brightness is not None for material in self.materials)
 
-    def _prepare(self) -> None:
-        """Gather all that never changes."""
-        self._kinds = list({id(i.material): i.material for i in self.instances}.values())
-        kind = {id(material): number for number, material in enumerate(self._kinds)}
-        # Neighbours in the table share a tree: what stands still before what moves, the solid before the masked.
-        ordered = sorted(enumerate(self.instances, 1), key=lambda each: (each[1].motion is not None, each[1].masked))
-        ids, instances = zip(*ordered, strict=True)
-        still = [instance for instance in instances if instance.motion is None]
-        self._moving = [instance for instance in instances if instance.motion is not None]
-        self._materials = Materials.of(self._kinds)
-        self._sky = sky_table(self.sky)
-        self.first_moving = sum(len(instance.corners) for instance in still)
-        self._triangles = Triangles.of(instances, ids, [kind[id(instance.material)] for instance in instances], 0.0)
-        self._trees = self._grow(still, self._triangles, 0)
-        self._still: Moment | None = None
-        lights_change = any(isinstance(light, PointLight) and light.motion is not None for light in self.lights)
-        if not (self._moving or lights_change or any(m.brightness is not None for m in self._kinds)):
-            lights = Lights.of(self._triangles, self._kinds, self.lights, self._sky, 0.0)
-            tables = Tables(self._triangles, self._materials, lights, self._sky)
-            self._still = Moment(tables, Trees(self._trees, self._triangles, self._materials), self._goals(0.0))
+    def shines_outside(self) -> bool:
+        """Whether light comes from outside, from the sky or a sun."""
+        sky = self.sky.image if isinstance(self.sky, Environment) else self.sky
+        suns = [light.irradiance for light in self.lights if isinstance(light, Sun)]
+        return bool(sky is not None and np.max(sky) > 0.0) or any(max(sun) > 0.0 for sun in suns)
 
-    def _grow(self, instances: Sequence[Instance], triangles: Triangles, first: int) -> list[Tree]:
-        """The trees over `instances`, whose triangles begin at `first` in the table: solid ones, masked ones."""
-        trees = []
-        for masked in (False, True):
-            count = sum(len(instance.corners) for instance in instances if instance.masked == masked)
-            if count:
-                trees.append(Tree(triangles.corners[first : first + count], first, masked=masked))
-            first += count
-        return trees
-
-    def _goals(self, time: float) -> tuple[Float64, ...]:
-        """A box for each material that shines or lets light through; everywhere, where light comes from outside."""
-        if self._shines_outside():
-            return (EVERYWHERE,)
-        boxes: dict[int, list[Float64]] = {}
-        for instance in self.instances:
-            if instance.material.transmissive or max(instance.material.emission) > 0.0:
-                boxes.setdefault(id(instance.material), []).append(instance.box_at(time))
-        return tuple(bounds(np.array(each)) for each in boxes.values())
+    def _box_at(self, time: float) -> Float64:
+        return bounds(np.array([instance.box_at(time) for instance in self.instances]))
 
     def _shines(self) -> bool:
         points = [light.intensity for light in self.lights if isinstance(light, PointLight)]
         lamps = [instance.material.emission for instance in self.instances]
-        return self._shines_outside() or any(max(light) > 0.0 for light in (*points, *lamps))
-
-    def _shines_outside(self) -> bool:
-        sky = self.sky.image if isinstance(self.sky, Environment) else self.sky
-        suns = [light.irradiance for light in self.lights if isinstance(light, Sun)]
-        return bool(sky is not None and np.max(sky) > 0.0) or any(max(sun) > 0.0 for sun in suns)
+        return self.shines_outside() or any(max(light) > 0.0 for light in (*points, *lamps))
 
 
 def _make(
     instances: Sequence[Instance],
     lights: Sequence[Sun | PointLight],
     sky: Colour | Environment | None,
-    camera_path: CameraPath,
+    camera_path: CameraPath | CarriedCamera,
 ) -> Scene:
     return Scene(instances, lights=lights, sky=sky, camera_path=camera_path)
 
@@ -177,11 +128,18 @@ def _check(instances: Sequence[Instance]) -> None:
 
 
 def _framing(instances: Sequence[Instance]) -> Camera:
-    """A camera that sees the bounding sphere of everything, from the front, a little above."""
-    corners = [instance.corners_at(0.0) for instance in instances]
-    low = np.min([part.min((0, 1)) for part in corners], axis=0)
-    high = np.max([part.max((0, 1)) for part in corners], axis=0)
+    """A camera that sees the bounding sphere of everything, wherever it moves, from the front, a little above."""
+    boxes = np.array([instance.box_at(time) for instance in instances for time in _moments(instance)])
+    low, high = bounds(boxes)
     middle, radius = (low + high) / 2.0, np.linalg.norm(high - low) / 2.0
+    # A single point is seen from a distance that double precision can tell from none.
+    distance = max(radius, 1e-6 * np.abs(middle).max()) or 1.0
     towards = np.array([0.35, 0.3, 1.0]) / np.linalg.norm([0.35, 0.3, 1.0])
-    eye = middle + towards * max(radius, 1e-6) / np.sin(np.radians(Camera.fov_y / 2.0))
+    eye = middle + towards * distance / np.sin(np.radians(Camera.fov_y / 2.0))
     return Camera(vector(eye), vector(middle))
+
+
+def _moments(instance: Instance) -> Float64:
+    """Times in seconds, from 0 on, that tell where it moves."""
+    first, last = (0.0, 0.0) if instance.motion is None else instance.motion.span
+    return np.unique(np.maximum(np.linspace(first, last, MOMENTS), 0.0))

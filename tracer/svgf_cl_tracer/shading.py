@@ -43,7 +43,7 @@ from .paths import (
     ShadowRays,
 )
 from .sampling import Random4, random4
-from .scene import Tables
+from .surroundings import Tables
 from .trees import FAR, MISS, Hits
 from .vec3 import Vec3, add, dot, multiply, row, scale, to_local, to_world
 from .vectors import Float32

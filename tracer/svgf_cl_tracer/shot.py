@@ -5,19 +5,27 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from .camera import Camera, CameraPath
+import numpy as np
+
+from .camera import Camera, CameraPath, CarriedCamera, vector
 from .errors import SceneError
 from .fingerprint import fingerprint, tracer_version
 from .scene import Scene
+from .vec3 import Vec3
 
 Shape = tuple[int, int]
+
+# Of the size of a scene's details, how far the origin stays behind the camera: single precision, with 2^-24 of it, then
+# misplaces things by a ten-thousandth of their size.
+STEP = 1000.0
 
 
 @dataclass(frozen=True, eq=False)
 class Shot:
     """What the frames of a sequence show.
 
-    The camera covers the whole of its path, however many frames there are; objects and lamps keep the time of a clock.
+    The camera covers the whole of its path, however many frames there are; objects, lamps and a camera that one of them
+    carries keep the time of a clock.
 
     Parameters
     ----------
@@ -26,7 +34,7 @@ class Shot:
         Size of a frame in pixels, >= 1 each.
     frames : int
         Length of the sequence, >= 1.
-    camera_path : CameraPath, optional
+    camera_path : CameraPath or CarriedCamera, optional
         The scene's own where absent.
     fps : float
         Frames per second, > 0.
@@ -40,7 +48,7 @@ class Shot:
     scene: Scene
     shape: Shape
     frames: int = 1
-    camera_path: CameraPath | None = None
+    camera_path: CameraPath | CarriedCamera | None = None
     fps: float = 24.0
 
     def __post_init__(self) -> None:
@@ -61,7 +69,20 @@ class Shot:
     def camera(self, number: float) -> Camera:
         """The camera of frame `number`, from 0; the one of frame 3.5 is halfway to the next."""
         path = self.camera_path or self.scene.camera_path
+        if isinstance(path, CarriedCamera):
+            return path.at_time(self.time(number))
         return path.at_frame(number, self.frames)
+
+    def origin(self, number: int) -> Vec3:
+        """The point that positions in frame `number` are relative to: the scene's nearest to the camera, or near that.
+
+        It follows the camera in large steps, as a scene's trees are built anew at each.
+        """
+        first, here = (self.scene.nearest(self.camera(at).position, self.time(at)) for at in (0, number))
+        if (first == here).all():
+            return vector(first)
+        step = STEP * self.scene.detail
+        return vector(first + step * np.round((here - first) / step) if step > 0.0 else here)
 
     def time(self, number: float) -> float:
         """The time of frame `number` in seconds."""

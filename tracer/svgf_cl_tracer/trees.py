@@ -14,6 +14,7 @@ from .boxes import bounds, passing
 from .compiled import compiled
 from .geometry import Triangles, lift, texture_coordinates
 from .materials import Materials, is_solid
+from .vec3 import Vec3
 from .vectors import Float32
 
 MISS = -1
@@ -55,7 +56,7 @@ class Tree:
         self._embree = EmbreeScene()
         vertices = corners.copy()
         vertices[:, 1:] += corners[:, :1]
-        self._box = bounds(vertices)
+        self.box = bounds(vertices)
         TriangleMesh(self._embree, vertices)
         # Embree builds its tree at the first query: not in several threads at once.
         self.blocked(np.zeros((1, 3), np.float32), np.ones((1, 3), np.float32), np.ones(1, np.float32))
@@ -72,7 +73,7 @@ class Tree:
 
     def near(self, origin: Float32, direction: Float32, distance: Float32) -> NDArray[np.int32]:
         """Which of the rays (N, 3) pass the tree's bounding box within `distance` (N,): few need to ask more of it."""
-        return np.flatnonzero(passing([self._box], origin, direction, distance)).astype(np.int32)
+        return np.flatnonzero(passing([self.box], origin, direction, distance)).astype(np.int32)
 
 
 class Trees:
@@ -89,6 +90,12 @@ class Trees:
 
     def __init__(self, trees: Sequence[Tree], triangles: Triangles, materials: Materials) -> None:
         self.trees, self.triangles, self.materials = tuple(trees), triangles, materials
+
+    def clearance(self, point: Vec3) -> float:
+        """How far around `point` there is nothing; 0 where that is less than all is wide."""
+        box = bounds(np.array([tree.box for tree in self.trees]))
+        gap = np.linalg.norm(np.clip(point, *box) - point)
+        return max(float(gap - np.linalg.norm(box[1] - box[0])), 0.0)
 
     def intersect(self, origin: Float32, direction: Float32) -> Hits:
         """The first solid point on each ray from `origin` (N, 3) along the unit vectors `direction` (N, 3)."""

@@ -57,9 +57,24 @@ def test_a_light_moves_with_its_node(tmp_path: Path) -> None:
     np.testing.assert_allclose(direction, (0, 1, 0), atol=1e-6)
 
 
+def test_a_directional_light_turns_with_its_node(tmp_path: Path) -> None:
+    """Whatever size the node has, be it none."""
+    buffers = Buffers()
+    times = buffers.add([0, 1])
+    samplers = [{"input": times, "output": buffers.add([UP, DOWN])}]
+    samplers.append({"input": times, "output": buffers.add([[0, 0, 0], [2, 2, 2]])})
+    paths = ("rotation", "scale")
+    channels = [{"sampler": n, "target": {"node": 1, "path": path}} for n, path in enumerate(paths)]
+    animation = {"samplers": samplers, "channels": channels}
+    meshes = [{"primitives": [buffers.square()]}]
+    sun = read(tmp_path, {"type": "directional"}, {}, buffers, animations=[animation], meshes=meshes)
+    for time, expected in ((0.0, (0, -1, 0)), (0.5, (0, 0, 1)), (1.0, (0, 1, 0))):
+        np.testing.assert_allclose(sun.direction_at(time), expected, atol=1e-6)
+
+
 def test_a_directional_light_comes_from_plus_z_without_extent(tmp_path: Path) -> None:
     sun = read(tmp_path, {"type": "directional", "intensity": 5}, {"rotation": DOWN, "scale": [3, 3, 3]})
-    np.testing.assert_allclose(np.array(sun.direction_to_light) / 3, (0, 1, 0), atol=1e-12)
+    np.testing.assert_allclose(sun.direction_to_light, (0, 1, 0), atol=1e-12)
     assert (sun.irradiance, sun.angular_radius) == ((5, 5, 5), 0)
 
 
@@ -74,7 +89,7 @@ def test_a_camera_looks_along_minus_z_from_its_node(tmp_path: Path) -> None:
         {"camera": 1, "translation": [0, 2, 3], "rotation": UP},
     ]
     gltf = Gltf.read(write_gltf(tmp_path / "a.gltf", nodes=nodes, cameras=cameras))
-    camera = read_camera(gltf, Nodes(gltf, np.eye(4)))
+    camera = read_camera(gltf, Nodes(gltf, np.eye(4))).path.at(0.0)
     np.testing.assert_allclose(camera.position, (1, 2, 3))
     np.testing.assert_allclose(camera.basis(), [(1, 0, 0), (0, 0, 1), (0, 1, 0)], atol=1e-9)
     assert camera.fov_y == pytest.approx(np.degrees(0.5))

@@ -8,8 +8,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from svgf_cl_tracer.motion import Keyframes, Motion, Track
-from svgf_cl_tracer.vectors import Float64
+from svgf_cl_tracer.motion import Keyframes, Motion, Track, translation
 
 from .values import Names, Part, Position, Seconds, Vector, unit
 
@@ -83,13 +82,7 @@ class Keyframed(Animation, title="keyframes"):
         """What carries the nodes from where the model has them."""
         step = self.interpolation == "step"
         tracks = {name: Track(self.times_s, values, step, self.repeats) for name, values in self._given().items()}
-        return Motion([_moved(self.pivot, 1.0), Keyframes(**tracks), _moved(self.pivot, -1.0)])
-
-
-def _moved(position: Vector, factor: float) -> Float64:
-    matrix = np.eye(4)
-    matrix[:3, 3] = np.array(position) * factor
-    return matrix
+        return Motion([translation(self.pivot), Keyframes(**tracks), translation(np.negative(self.pivot))])
 
 
 AnyAnimation = Annotated[Rotation | Keyframed, Field(discriminator="kind")]

@@ -48,14 +48,15 @@ def described_scene(
         lights = _chosen(description, alternative_lights)
         model = load_model(_inside(folder, description.model), description.to_world())
         model = _painted(_animated(model, description.animations()), description.materials, lights)
-        cameras = [view.camera() for view in description.views()] or ([model.camera] if model.camera else [])
+        cameras = [view.camera() for view in description.views()]
+        own = model.eye.path if model.eye else None
         rectangles = [light.instance() for light in lights if isinstance(light, Rectangle)]
         suns = [light.light() for light in lights if isinstance(light, SunLight)]
         return Scene(
             [*(item.instance for item in model.objects), *rectangles],
             lights=[*(item.light for item in model.lights), *suns],
             sky=_sky(folder, lights) if sky is None else sky,
-            camera_path=CameraPath.through(cameras) if cameras else None,
+            camera_path=CameraPath.through(cameras) if cameras else own,
         )
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from error
@@ -90,9 +91,8 @@ def _sky(folder: Path, lights: Sequence[AnyLight]) -> Colour | Environment | Non
 
 def _animated(model: Model, animations: Sequence[AnyAnimation]) -> Model:
     """The model with its nodes moving."""
-    chains = [*(item.nodes for item in model.objects), *(item.nodes for item in model.lights)]
     for animation in animations:
-        _check_names("animation: nodes", animation.nodes, {name for chain in chains for name in chain})
+        _check_names("animation: nodes", animation.nodes, model.nodes)
         model = model.carried(frozenset(animation.nodes), animation.motion())
     return model
 

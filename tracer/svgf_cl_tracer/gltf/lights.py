@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from svgf_cl_tracer.camera import Camera, vector
+from svgf_cl_tracer.camera import Camera, CarriedCamera, vector
 from svgf_cl_tracer.lights import PointLight, Sun
 from svgf_cl_tracer.meshes import colour
-from svgf_cl_tracer.model import Light
+from svgf_cl_tracer.model import Eye, Light
 from svgf_cl_tracer.motion import Motion
 
 from .extensions import LIGHTS
@@ -25,7 +25,7 @@ from .nodes import Nodes
 
 
 def read_lights(gltf: Gltf, nodes: Nodes) -> Iterator[Light]:
-    """The lights of the scene's nodes; a directional one keeps the direction it has at the start."""
+    """The lights of the scene's nodes."""
     known = gltf.document.get("extensions", {}).get(LIGHTS, {}).get("lights", [])
     for chain in nodes.chains():
         extension = nodes.node(chain).get("extensions", {}).get(LIGHTS)
@@ -35,9 +35,9 @@ def read_lights(gltf: Gltf, nodes: Nodes) -> Iterator[Light]:
 
 def _light(document: dict[str, Any], motion: Motion) -> PointLight | Sun:
     strength = colour(np.array(document.get("color", (1.0, 1.0, 1.0))) * document.get("intensity", 1.0))
-    matrix = motion.matrix(0.0)
     if document["type"] == "directional":
-        return Sun(vector(matrix[:3, 2]), strength, angular_radius=0.0)
+        sun = Sun((0.0, 0.0, 1.0), strength, angular_radius=0.0, motion=motion)
+        return sun if motion.changes else replace(sun, direction_to_light=vector(sun.direction_at(0.0)), motion=None)
     inner, outer = 180.0, 180.0
     if document["type"] == "spot":
         cone = document.get("spot", {})
@@ -51,12 +51,12 @@ def _light(document: dict[str, Any], motion: Motion) -> PointLight | Sun:
     return replace(light, position=vector(position), direction=vector(direction), motion=None)
 
 
-def read_camera(gltf: Gltf, nodes: Nodes) -> Camera | None:
-    """The first perspective camera among the scene's nodes, as it stands at the start; None where there is none."""
+def read_camera(gltf: Gltf, nodes: Nodes) -> Eye | None:
+    """The first perspective camera among the scene's nodes; None where there is none."""
     for chain in nodes.chains():
         node = nodes.node(chain)
         lens = gltf.item("cameras", node["camera"]).get("perspective") if "camera" in node else None
         if lens:
-            _, up, back, position = nodes.motion(chain).matrix(0.0)[:3].T
-            return Camera(vector(position), vector(position - back), vector(up), math.degrees(lens["yfov"]))
+            camera = Camera((0.0, 0.0, 0.0), (0.0, 0.0, -1.0), fov_y=math.degrees(lens["yfov"]))
+            return Eye(CarriedCamera(camera, nodes.motion(chain)), nodes.names(chain))
     return None
