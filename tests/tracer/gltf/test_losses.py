@@ -168,7 +168,6 @@ def test_animations_that_are_not_played_are_named(tmp_path: Path) -> None:
     clip = {"samplers": [{"input": times, "output": values}], "channels": channels}
     found = lost(tmp_path, buffers, animations=[clip, clip], nodes=[{"mesh": 0}, {"camera": 0}], cameras=[PERSPECTIVE])
     assert found == [
-        "the camera moves in the file; it stands here as at time 0",
         "animations: the first of 2 is played",
         "channels of the animation that are not read: 1 of pointer, 1 of weights",
     ]
