@@ -215,7 +215,7 @@ class CarriedCamera:
     camera : Camera
         In the space of what carries it.
     motion : Motion
-        From that space into the world. Its sizes move the camera, but change neither focus nor lens.
+        From that space into the world. Its sizes move the camera, and change nothing else of it.
     """
 
     camera: Camera
@@ -223,12 +223,12 @@ class CarriedCamera:
 
     def at_time(self, time: float) -> Camera:
         """The camera in the world at `time` in seconds."""
-        matrix = self.motion.matrix(time)
+        matrix, turn = self.motion.matrix(time), self.motion.turn(time)
         position = matrix[:3, :3] @ self.camera.position + matrix[:3, 3]
-        _, *axes = self.camera.basis()
-        up, forward = (axis / np.linalg.norm(axis) for axis in axes @ matrix[:3, :3].T)
-        look_at = position + math.dist(self.camera.position, self.camera.look_at) * forward
-        return replace(self.camera, position=vector(position), look_at=vector(look_at), up=vector(up))
+        look_at = position + turn @ np.subtract(self.camera.look_at, self.camera.position)
+        return replace(
+            self.camera, position=vector(position), look_at=vector(look_at), up=vector(turn @ self.camera.up)
+        )
 
 
 def _catmull_rom(points: Float64, s: float) -> Float64:

@@ -55,7 +55,7 @@ class Sun:
     def direction_at(self, time: float) -> Float64:
         """The unit vector (3,) towards the middle of the disc at `time` in seconds."""
         direction = np.array(self.direction_to_light, np.float64)
-        return _unit(direction if self.motion is None else self.motion.matrix(time)[:3, :3] @ direction)
+        return _unit(direction if self.motion is None else self.motion.turn(time) @ direction)
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +115,7 @@ class PointLight:
         position, direction = np.array(self.position, np.float64), np.array(self.direction, np.float64)
         if self.motion is not None:
             matrix = self.motion.matrix(time)
-            position, direction = matrix[:3, :3] @ position + matrix[:3, 3], matrix[:3, :3] @ direction
+            position, direction = matrix[:3, :3] @ position + matrix[:3, 3], self.motion.turn(time) @ direction
         return position, _unit(direction)
 
 

@@ -174,6 +174,15 @@ class Motion:
             result = result @ (link.matrix(time) if isinstance(link, Keyframes) else np.asarray(link, np.float64))
         return result
 
+    def turn(self, time: float) -> Float64:
+        """What turns directions (3, 3) that no size stretches, such as a camera's, at `time` in seconds."""
+        result = np.eye(3)
+        for link in self.links:
+            linear = (link.matrix(time) if isinstance(link, Keyframes) else np.asarray(link, np.float64))[:3, :3]
+            lengths = np.linalg.norm(linear, axis=0)
+            result = result @ (linear / np.where(lengths > 0.0, lengths, 1.0))
+        return result
+
 
 def translation(way: ArrayLike) -> Float64:
     """The transform (4, 4) that moves everything by `way` (3,)."""

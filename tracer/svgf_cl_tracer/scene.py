@@ -133,7 +133,7 @@ def _framing(instances: Sequence[Instance]) -> Camera:
     low, high = bounds(boxes)
     middle, radius = (low + high) / 2.0, np.linalg.norm(high - low) / 2.0
     # A single point is seen from a distance that double precision can tell from none.
-    distance = max(radius, 1e-6 * np.abs(middle).max()) or 1.0
+    distance = max(radius, 1e-9 * np.abs(middle).max()) or 1.0
     towards = np.array([0.35, 0.3, 1.0]) / np.linalg.norm([0.35, 0.3, 1.0])
     eye = middle + towards * distance / np.sin(np.radians(Camera.fov_y / 2.0))
     return Camera(vector(eye), vector(middle))
