@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from svgf_cl_tracer.camera import OUTSIDE, Camera, CameraPath, Lens, project, ray_through
+from svgf_cl_tracer.camera import OUTSIDE, Camera, CameraPath, CarriedCamera, Lens, project, ray_through
 from svgf_cl_tracer.errors import SceneError
+from svgf_cl_tracer.motion import Keyframes, Motion, Track, translation
 
 AHEAD = Camera((0, 0, 0), (0, 0, -1), fov_y=90.0)
 SHAPE = (240, 320)
@@ -171,3 +172,27 @@ def test_a_static_path_stays() -> None:
 def test_an_empty_path_is_refused() -> None:
     with pytest.raises(SceneError, match="at least one camera"):
         CameraPath(())
+
+
+def test_a_carried_camera_is_where_it_is_carried_to_whatever_its_size() -> None:
+    camera = Camera((1, 0, 0), (1, 0, -3), fov_y=30.0, aperture=0.1)
+    turn = Motion.turning((0, 0, 0), (0, 1, 0), [0.0, 1.0], [0.0, 90.0])
+    sizes = Keyframes(scale=Track([0.0, 1.0], [(0, 0, 0), (2, 2, 2)]))
+    carried = CarriedCamera(camera, Motion([translation((1e7, 0, 0)), *turn.links, sizes]))
+    for time, eye, forward in ((0.0, (1e7, 0, 0), (0, 0, -1)), (1.0, (1e7, 0, -2), (-1, 0, 0))):
+        found = carried.at_time(time)
+        np.testing.assert_allclose(found.position, eye, atol=1e-8)
+        np.testing.assert_allclose(found.basis()[1:], [(0, 1, 0), forward], atol=1e-8)
+        assert np.linalg.norm(np.subtract(found.look_at, found.position)) == pytest.approx(3)
+        assert (found.fov_y, found.aperture) == (30, 0.1)
+
+
+@pytest.mark.parametrize("aperture", [0.0, 0.5])
+def test_rays_start_within_the_clearance_on_their_way(aperture: float) -> None:
+    camera = Camera((1, 2, 3), (0, 0, 0), aperture=aperture)
+    for u, v in ((0.0, 0.0), (0.9, 0.3)):
+        here, direction = ray_through(camera.lens((20, 30)), 7.0, 9.0, u, v)
+        ahead, same = ray_through(camera.lens((20, 30), 2.0), 7.0, 9.0, u, v)
+        assert same == direction
+        np.testing.assert_allclose(np.subtract(ahead, here), np.multiply(direction, 2.0 - aperture), atol=1e-12)
+        assert np.linalg.norm(np.subtract(ahead, camera.position)) <= 2.0 + 1e-12

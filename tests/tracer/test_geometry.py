@@ -8,9 +8,10 @@ import pytest
 import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from svgf_cl_tracer.errors import SceneError
-from svgf_cl_tracer.geometry import Instance, Triangles, cofactors, corners_of, interpolated, surface_at
+from svgf_cl_tracer.geometry import Instance, Triangles, cofactors, corners_of, interpolated, mirrors, surface_at
 from svgf_cl_tracer.materials import Material
 from svgf_cl_tracer.motion import Keyframes, Motion, Track
 
@@ -104,6 +105,41 @@ def test_what_has_no_colours_is_white_beside_what_has(floor: Callable[..., Insta
         np.testing.assert_allclose(interpolated(found, 0, b, c), (1, 1, 1))
         np.testing.assert_allclose(interpolated(found, 3, b, c), colours[1, corner], atol=1e-6)
     assert len(Triangles.of([plain], [1], [0], 0.0).colours) == 0, "no memory where there are none"
+
+
+@given(matrices)
+def test_a_thing_at_rest_is_what_it_was_at_that_time(matrix: np.ndarray) -> None:
+    """Its corners run counter-clockwise again where it is mirrored, and what is given at corners goes with them."""
+    placed = np.eye(4)
+    placed[:3, :3] = matrix
+    body = moved(Instance(BALL.triangles, Material(), SMOOTH.normals, BALL.triangles[..., :2]), placed)
+    rest = body.at_rest(0.0)
+    turned = bool(np.linalg.det(matrix) < -1e-9)
+    if abs(np.linalg.det(matrix)) > 1e-9:
+        assert body.mirrored_at(0.0) == turned
+    order = [2, 1, 0] if body.mirrored_at(0.0) else [0, 1, 2]
+    assert not rest.mirrored_at(0.0)
+    np.testing.assert_array_equal(rest.corners, body.corners_at(0.0)[:, order])
+    np.testing.assert_array_equal(rest.normals, body.normals_at(0.0)[:, order])
+    np.testing.assert_array_equal(rest.uv, body.uv[:, order])
+
+
+@settings(deadline=None)
+@given(st.tuples(*[st.floats(-180, 180)] * 3), st.integers(0, 2))
+def test_a_flattening_transform_does_not_mirror(degrees: tuple[float, float, float], axis: int) -> None:
+    """Between two turns rounding leaves it a determinant beside 0."""
+    turn = Rotation.from_euler("xyz", degrees, degrees=True).as_matrix()
+    flat = np.diag([0.0 if axis == index else 1.0 for index in range(3)])
+    matrix = np.eye(4)
+    matrix[:3, :3] = turn @ flat @ turn.T
+    assert not mirrors(matrix)
+
+
+def test_the_front_of_a_mirrored_thing_goes_with_it(floor: Callable[..., Instance]) -> None:
+    over = moved(floor(Material()), resized(1.0, -1.0, 1.0))
+    assert not surface_at(Triangles.of([over], [1], [0], 0.0), 0, 0.25, 0.5, DOWN).front
+    aside = moved(floor(Material()), resized(-1.0, 1.0, 1.0))
+    assert surface_at(Triangles.of([aside], [1], [0], 0.0), 0, 0.25, 0.5, DOWN).front
 
 
 @settings(deadline=None)

@@ -77,6 +77,37 @@ def test_the_outermost_parent_acts_last() -> None:
     np.testing.assert_allclose(Motion([Keyframes(rotation=quarter), shift]).matrix(0.0)[:3, 3], (0, 5, 0), atol=1e-12)
 
 
+def test_a_motion_changes_where_its_values_do() -> None:
+    """Exporters write keyframes for what stands still too."""
+    still = Track([0.0, 3.0], [(1, 2, 3), (1, 2, 3)])
+    moving = Track([-1.0, 5.0, 6.0], [(1, 2, 3), (1, 2, 3), (0, 0, 0)])
+    for motion, span in (
+        (Motion([np.eye(4), Keyframes(translation=still, scale=still)]), (0, 0)),
+        (Motion([np.eye(4), Keyframes(translation=still, scale=moving)]), (-1, 6)),
+        (Motion([Keyframes(moving), Keyframes(Track([7.0, 8.0], [(0, 0, 0), (1, 0, 0)]))]), (-1, 8)),
+    ):
+        assert motion.span == span
+        assert motion.changes == (span != (0, 0))
+
+
+@given(times, st.sampled_from([(2.0, 3.0, 4.0), (0.0, 0.0, 0.0), (0.0, 1.0, 1e-9)]))
+def test_sizes_turn_no_direction(time: float, size: tuple[float, float, float]) -> None:
+    turn = Motion.turning((1, 2, 3), (1, 1, 0), [0.0, 4.0], [0.0, 170.0])
+    sizes = Track([0.0, 4.0], [size, (1.0, 1.0, 1.0)])
+    motion = Motion([np.diag([5.0, 5.0, 5.0, 1.0]), Keyframes(scale=sizes), *turn.links, Keyframes(scale=sizes)])
+    linear = turn.matrix(time)[:3, :3]
+    np.testing.assert_allclose(motion.turn(time), linear, atol=1e-9)
+
+
+def test_a_mirroring_size_turns_directions_back() -> None:
+    np.testing.assert_array_equal(Motion([np.diag([1.0, 1.0, -3.0, 1.0])]).turn(0.0), np.diag([1, 1, -1]))
+
+
+def test_positions_are_relative_to_an_origin() -> None:
+    motion = Motion.sliding([0.0, 2.0], [(1e9, 0, 0), (1e9 + 1, 0, 0)]).relative_to((1e9, 2.0, 0.0))
+    np.testing.assert_array_equal(motion.matrix(1.0) @ (0, 0, 0, 1), (0.5, -2, 0, 1))
+
+
 def test_sliding_passes_through_its_positions() -> None:
     motion = Motion.sliding([0.0, 2.0], [(0, 0, 0), (4, 0, -2)])
     np.testing.assert_allclose(motion.matrix(0.5) @ (1, 1, 1, 1), (2, 1, 0.5, 1))

@@ -11,7 +11,7 @@ from svgf_cl_tracer.errors import SceneError
 from svgf_cl_tracer.geometry import Instance
 from svgf_cl_tracer.lights import PointLight, Sun
 from svgf_cl_tracer.materials import Material
-from svgf_cl_tracer.motion import Motion, Track
+from svgf_cl_tracer.motion import Keyframes, Motion, Track, translation
 from svgf_cl_tracer.render import render_frame
 from svgf_cl_tracer.scene import Scene
 from svgf_cl_tracer.shot import Shot
@@ -19,7 +19,7 @@ from svgf_cl_tracer.sky import Environment
 
 BLACK, WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 SLIDE = Motion.sliding([0.0, 1.0], [(0, 0, 0), (4, 0, 0)])
-ORIGIN = (0.0, 0.0, 0.0)
+FLIGHT = [0.0, 1.0], [(0, 0, 0), (0, 100, 0)]
 DIMMED = Track([0.0, 1.0], [[1.0], [0.5]])
 
 Quad = Callable[..., Instance]
@@ -76,47 +76,40 @@ def test_a_scene_changes_where_anything_but_the_camera_does(floor: Floor, quad: 
     sun = Sun((0, 1, 0), WHITE)
     assert not Scene([ground], lights=[sun, PointLight((0, 1, 0), WHITE)], sky=WHITE).changes
     assert Scene([ground], lights=[PointLight((0, 1, 0), WHITE, motion=SLIDE)]).changes
+    assert Scene([ground], lights=[Sun((0, 1, 0), WHITE, motion=SLIDE)]).changes
     assert Scene([quad((0, 0, 0), (1, 0, 0), (0, 1, 0), None, SLIDE)], lights=[sun]).changes
     assert Scene([floor(Material(emission=WHITE, brightness=DIMMED))]).changes
 
 
-def test_what_does_not_change_is_made_once(floor: Floor, quad: Quad) -> None:
-    still = Scene([floor(Material())], sky=WHITE)
-    assert still.around(ORIGIN).at(0.0) is still.around(ORIGIN).at(1.0)
-    body = quad((0, 0, 0), (1, 0, 0), (0, 1, 0), None, SLIDE)
-    moving = Scene([body, floor(Material())], sky=WHITE)
-    assert moving.around(ORIGIN).at(0.0).trees.trees[0] is moving.around(ORIGIN).at(1.0).trees.trees[0]
+def test_the_default_camera_sees_where_things_move(quad: Quad) -> None:
+    """Also what has no size at first, wherever that is."""
+    grown = Keyframes(scale=Track([1.0, 2.0], [(0, 0, 0), (4, 2, 1)]))
+    for place in ((0.0, 0.0, 0.0), (1e7, 1e7, 1e7)):
+        motion = Motion([translation(place), grown])
+        camera = Scene([quad((-1, -1, 0), (2, 0, 0), (0, 2, 0), None, motion)], sky=WHITE).camera_path.at(0.0)
+        x, y, depth = project(camera.lens((100, 100)), tuple(np.subtract(np.add(place, (4, 2, 0)), camera.position)))
+        assert 60 < x < 99.5
+        assert -0.5 < y < 40
+        assert depth > 0
 
 
-def test_triangles_keep_their_numbers_while_they_move(floor: Floor, quad: Quad) -> None:
-    """Those at rest come first, and the scene tells where each was at any time."""
-    body = quad((0, 0, 0), (1, 0, 0), (0, 1, 0), None, SLIDE)
-    scene = Scene([body, floor(Material()), body], sky=WHITE).around(ORIGIN)
-    for time, shift in ((0.0, 0.0), (0.5, 2.0), (2.0, 4.0)):
-        triangles = scene.at(time).tables.triangles
-        np.testing.assert_array_equal(triangles.corners[scene.first_moving :], scene.corners_at(time))
-        np.testing.assert_array_equal(triangles.corners[:2], scene.at(0.0).tables.triangles.corners[:2])
-        np.testing.assert_array_equal(triangles.corners[2:, 0, 0], shift)
-        np.testing.assert_array_equal(triangles.instance, (2, 2, 1, 1, 3, 3))
+def test_the_latest_surroundings_are_kept(floor: Floor) -> None:
+    scene = Scene([floor(Material())], sky=WHITE)
+    first = scene.around((0.0, 0.0, 0.0))
+    assert scene.around((0.0, 0.0, 0.0)) is first
+    assert scene.around((1.0, 0.0, 0.0)) is not first
 
 
-def test_paths_end_at_lamps_and_glass_unless_light_comes_from_outside(floor: Floor, quad: Quad) -> None:
-    shining = Material(emission=WHITE)
-    lamps = [quad((0, y, 0), (1, 0, 0), (0, 0, 1), shining, SLIDE) for y in (2, 3)]
-    glass = quad((0, 9, 0), (1, 0, 0), (0, 0, 1), Material(transmissive=True))
-    parts = [floor(Material()), *lamps, glass]
-    second, first = Scene(parts).around(ORIGIN).at(0.5).goals
-    np.testing.assert_allclose(first, [(2, 2, 0), (3, 3, 1)])
-    np.testing.assert_allclose(second, [(0, 9, 0), (1, 9, 1)])
-    for light in ({"sky": WHITE}, {"lights": [Sun((0, 1, 0), WHITE)]}):
-        assert np.isinf(Scene(parts, **light).around(ORIGIN).at(0.5).goals).all()
+def test_the_nearest_point_is_in_the_box_of_the_time(floor: Floor, quad: Quad) -> None:
+    scene = Scene([floor(Material()), quad((0, 0, 0), (1, 0, 0), (0, 9, 0), None, Motion.sliding(*FLIGHT))], sky=WHITE)
+    np.testing.assert_allclose(scene.nearest((3.0, 4.0, 5.0), 0.0), (3, 4, 5))
+    np.testing.assert_allclose(scene.nearest((3.0, 40.0, 90.0), 0.0), (3, 9, 50))
+    np.testing.assert_allclose(scene.nearest((3.0, 40.0, 90.0), 1.0), (3, 40, 50))
 
 
-def test_brightness_is_that_of_the_time(floor: Floor) -> None:
-    scene = Scene([floor(Material(emission=(2, 4, 6), brightness=DIMMED)), floor(Material(emission=WHITE))])
-    for time, factor in ((0.0, 1.0), (0.5, 0.75), (3.0, 0.5)):
-        emission = scene.around(ORIGIN).at(time).tables.materials.emission
-        np.testing.assert_allclose(emission, [np.multiply((2, 4, 6), factor), WHITE])
+def test_details_are_as_large_as_most_triangles_are_across(quad: Quad) -> None:
+    small = [quad((x, 0, 0), (0.5, 0, 0), (0, 2, 0)) for x in range(5)]
+    assert Scene([*small, quad((0, 0, 0), (1e6, 0, 0), (0, 1e6, 0))], sky=WHITE).detail == 0.5
 
 
 def test_a_scene_can_be_sent_to_another_process(floor: Floor, quad: Quad) -> None:

@@ -4,10 +4,11 @@ from collections.abc import Callable
 
 import pytest
 
-from svgf_cl_tracer.camera import Camera, CameraPath
+from svgf_cl_tracer.camera import Camera, CameraPath, CarriedCamera
 from svgf_cl_tracer.errors import SceneError
 from svgf_cl_tracer.geometry import Instance
 from svgf_cl_tracer.materials import Material
+from svgf_cl_tracer.motion import Motion
 from svgf_cl_tracer.scene import Scene
 from svgf_cl_tracer.shot import Shot
 
@@ -36,6 +37,27 @@ def test_the_scenes_own_path_is_the_default(scene: Scene) -> None:
 def test_a_frames_time_is_its_number_over_the_rate(scene: Scene) -> None:
     assert Shot(scene, (4, 4), 100, fps=50.0).time(25) == 0.5
     assert Shot(scene, (4, 4), 100).time(12.0) == 0.5
+
+
+def test_a_carried_camera_keeps_the_time_of_a_clock(scene: Scene) -> None:
+    way = CarriedCamera(Camera((0, 1, 5), (0, 0, 0)), Motion.sliding([0.0, 1.0], [(0, 0, 0), (4, 0, 0)]))
+    for frames in (1, 100):
+        assert Shot(scene, (4, 4), frames, way, fps=10.0).camera(5).position == (2, 1, 5)
+
+
+def test_the_origin_follows_the_camera_in_large_steps(quad: Callable[..., Instance]) -> None:
+    wide = Scene(
+        [quad((0, -1, 0), (1e6, 0, 0), (0, 2, 0)), *[quad((0, 0, 0), (1, 0, 0), (0, 1, 0))] * 2], sky=(1, 1, 1)
+    )
+    road = CameraPath.through([Camera((x, 0, 9), (x, 0, 0)) for x in (100.0, 1e6)])
+    shot = Shot(wide, (4, 4), 10001, road)
+    origins = {number: shot.origin(number) for number in range(0, 1001)}
+    assert origins[0] == (100, 0, 0)
+    assert 90 < len(set(origins.values())) < 110
+    for number, origin in origins.items():
+        assert abs(shot.camera(number).position[0] - origin[0]) <= 500 + 1e-6
+    still = Shot(wide, (4, 4), 10, CameraPath.static(Camera((5e5, 7, 9), (5e5, 0, 0))))
+    assert still.origin(0) == still.origin(9) == (5e5, 1, 0)
 
 
 @pytest.mark.parametrize(

@@ -180,3 +180,9 @@ def test_a_ray_along_the_faces_of_a_moving_body_is_not_lost() -> None:
     origin = rows((0.5, 1, 0), (0, 1, 0.5), (0.5, 1, 1), (1, 1, 0.5), (0.25, 1, 0.5), (1.1, 1, 0.5))
     hits = found.intersect(origin, np.broadcast_to(np.array(DOWN, np.float32), origin.shape).copy())
     np.testing.assert_array_equal(ids(found, hits), [2, 2, 2, 2, 2, 0])
+
+
+def test_there_is_nothing_within_the_clearance(quad: Callable[..., Instance]) -> None:
+    found = trees([quad((0, 0, 0), (3, 0, 0), (0, 4, 0)), quad((0, 0, 0), (1, 0, 0), (0, 1, 0), CHEQUERED, STILL)])
+    assert found.clearance((1.0, 1.0, 100.0)) == pytest.approx(95)
+    assert found.clearance((1.0, 1.0, 5.0)) == found.clearance((1.0, 1.0, 0.0)) == 0

@@ -177,9 +177,9 @@ def mirrored_of(instances: Sequence[Instance], time: float) -> NDArray[np.bool_]
 
 def mirrors(matrix: Float64) -> bool:
     """Whether a transform (4, 4) mirrors; one that flattens does not."""
-    linear = matrix[:3, :3]
+    a, b, c = matrix[:3, :3].T
     # Rounding leaves a flattening one a determinant beside 0.
-    return bool(np.linalg.det(linear) < -1e-14 * np.linalg.norm(linear, axis=0).prod())
+    return bool(a @ np.cross(b, c) < -1e-14 * np.linalg.norm((a, b, c), axis=1).prod())
 
 
 def cofactors(matrix: NDArray[np.floating]) -> Float64:

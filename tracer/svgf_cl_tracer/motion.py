@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from .errors import SceneError
 from .vectors import Float64
 
-# In place of a size of 0, so that what has none keeps its directions: a lamp still shines along its axis.
+# The least size, so that what has none keeps its directions: a lamp still shines along its axis.
 SPECK = 1e-30
 
 
@@ -119,7 +119,7 @@ class Keyframes:
             matrix[:3, :3] = rotation_matrix(self.rotation.rotation_at(time))
         if self.scale is not None:
             scale = self.scale.at(time)
-            matrix[:3, :3] *= np.where(scale == 0.0, SPECK, scale)
+            matrix[:3, :3] *= np.where(scale < 0.0, np.minimum(scale, -SPECK), np.maximum(scale, SPECK))
         if self.translation is not None:
             matrix[:3, 3] = self.translation.at(time)
         return matrix
