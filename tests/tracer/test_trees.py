@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from svgf_cl_tracer.geometry import Instance, lift
 from svgf_cl_tracer.materials import Material, Materials, is_solid
 from svgf_cl_tracer.motion import Motion
 from svgf_cl_tracer.scene import Scene
-from svgf_cl_tracer.trees import FAR, MISS, Hits, Trees
+from svgf_cl_tracer.trees import FAR, MISS, Hits, Tree, Trees
 
 DOWN = (0.0, -1.0, 0.0)
 # Opaque and transparent in turns, both across and up.
@@ -186,3 +187,15 @@ def test_there_is_nothing_within_the_clearance(quad: Callable[..., Instance]) ->
     found = trees([quad((0, 0, 0), (3, 0, 0), (0, 4, 0)), quad((0, 0, 0), (1, 0, 0), (0, 1, 0), CHEQUERED, STILL)])
     assert found.clearance((1.0, 1.0, 100.0)) == pytest.approx(95)
     assert found.clearance((1.0, 1.0, 5.0)) == found.clearance((1.0, 1.0, 0.0)) == 0
+
+
+def test_a_ray_that_runs_along_a_hole_leaves_it_soon(quad: Callable[..., Instance], monkeypatch: Any) -> None:
+    """Rounding holds it in the plane, however often it goes on by what leaves a triangle that is met head on."""
+    asked = []
+    real = Tree.nearest
+    monkeypatch.setattr(Tree, "nearest", lambda tree, *rays: asked.append(len(rays[0])) or real(tree, *rays))
+    found = trees([quad((-9, -9, 3.4), (18, 0, 0), (0, 18, 0), INVISIBLE), quad((6, -9, -9), (0, 18, 0), (0, 0, 18))])
+    hits = found.intersect(rows((0.0, 1.0, 3.4)), rows((1.0, 0.0, 1e-9)))
+    assert ids(found, hits).tolist() == [2]
+    np.testing.assert_allclose(hits.distance, 6, rtol=1e-4)
+    assert len(asked) < 50

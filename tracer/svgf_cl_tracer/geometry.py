@@ -69,7 +69,7 @@ class Instance:
 
     def box_at(self, time: float) -> Float64:
         """A box (2, 3) around it in the world at `time` in seconds."""
-        return bounds(self._placed(corners_of_box(self._box), time))
+        return self._box if self.motion is None else bounds(self._placed(corners_of_box(self._box), time))
 
     def normals_at(self, time: float) -> NDArray[np.floating]:
         """The normals (T, 3, 3) at the corners in the world at `time` in seconds."""

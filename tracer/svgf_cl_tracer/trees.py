@@ -38,6 +38,13 @@ class Hits(NamedTuple):
         return cls(np.full(len(distance), MISS, np.int32), np.empty_like(distance), np.empty_like(distance), distance)
 
 
+class Left(NamedTuple):
+    """Of a batch of N rays the triangle that each has left, or `MISS`, and how far behind it the ray goes on."""
+
+    triangle: NDArray[np.int32]
+    way: Float32
+
+
 class Tree:
     """Embree's tree over some neighbouring triangles of a scene.
 
@@ -131,13 +138,16 @@ class Trees:
         `ray` (K,) are the numbers of the rays in `hits`.
         """
         travelled = np.zeros(len(ray), np.float32)
+        latest = Left(np.full(len(ray), MISS, np.int32), np.empty(len(ray), np.float32))
         while len(ray):
             found = tree.nearest(origin, direction, hits.distance[ray] - travelled)
-            passed, step = np.empty(len(ray), np.int32), np.empty(len(ray), np.float32)
+            passed = np.empty(len(ray), np.int32)
             count = _settle(
-                self.triangles, self.materials, found, tree.first, tree.masked, ray, travelled, hits, passed, step
+                self.triangles, self.materials, found, tree.first, tree.masked, ray, travelled, hits, passed, latest
             )
-            passed, step = passed[:count], step[:count]
+            passed = passed[:count]
+            latest = Left(latest.triangle[passed], latest.way[passed])
+            step = found.distance[passed] + latest.way
             ray, travelled = ray[passed], travelled[passed] + step
             direction = direction[passed]
             origin = origin[passed] + step[:, None] * direction
@@ -154,11 +164,11 @@ def _settle(
     travelled: Float32,
     hits: Hits,
     passed: NDArray[np.int32],
-    step: Float32,
+    latest: Left,
 ) -> int:
     """Put solid points into `hits`; the rays that have met a point that is none are put into `passed`, and counted.
 
-    `step` is how far each of those goes on to have left that point.
+    `latest` is what each ray left last, and becomes what it leaves now.
     """
     count = 0
     for index in range(len(ray)):
@@ -173,6 +183,10 @@ def _settle(
             hits.b[target], hits.c[target] = b, c
             hits.distance[target] = travelled[index] + found.distance[index]
         else:
-            passed[count], step[count] = index, found.distance[index] + lift(triangles.corners, triangle)
+            # A ray that runs along a triangle may meet it again, wherever rounding has put it.
+            again = triangle == latest.triangle[index]
+            latest.way[index] = 2.0 * latest.way[index] if again else lift(triangles.corners, triangle)
+            latest.triangle[index] = triangle
+            passed[count] = index
             count += 1
     return count
