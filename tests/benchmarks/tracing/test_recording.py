@@ -29,6 +29,7 @@ class Counted(EmbreeScene):
 def test_every_ray_is_recorded_and_sent_again(scene: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(trees, "EmbreeScene", Counted)
     shot = Shot(builtin_scene(scene), (18, 32), 24)
+    shot.scene.around(shot.origin(3))
     built = Counted.rays  # a tree takes a ray to be built
     recording = record(shot, 3)
     trees_built = 1 + (scene == "swing")  # to send all rays into, and of what moves in the frame
