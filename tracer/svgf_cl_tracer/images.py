@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 
 import numpy as np
 import PIL.Image
@@ -31,7 +32,7 @@ class Images:
         self._decoded: dict[str, Image] = {}
         self._room = MAX_PIXELS
 
-    def pixels(self, name: str, encoded: bytes) -> Image:
+    def pixels(self, name: str, read: Callable[[], bytes]) -> Image:
         """Pixels (h, w, 3), or (h, w, 4) where there is opacity, uint8, as they are stored: row 0 on top.
 
         Of 16 bits the upper 8 are kept. Colour profiles, gamma and the orientation in EXIF are left aside, as glTF
@@ -41,8 +42,8 @@ class Images:
         ----------
         name : str
             What errors call the image; the same name stands for the same image.
-        encoded : bytes
-            Its file.
+        read : callable
+            Gives its file's bytes, when they are first wanted.
 
         Raises
         ------
@@ -51,7 +52,7 @@ class Images:
         """
         if name not in self._decoded:
             try:
-                image = _opened(encoded)
+                image = _opened(read())
                 self._room -= image.width * image.height
                 if self._room < 0:
                     raise SceneError(f"expected at most {MAX_PIXELS} pixels in all images together, found more")

@@ -1,0 +1,126 @@
+"""MTL files: the statements of each material, and the images that they name."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+from svgf_cl_tracer.errors import SceneError
+
+from .text import floats, is_number, read_text, statements, uncommented
+
+# Options of an image, and how many words follow each at most: one, and further ones where they are numbers.
+OPTIONS = {
+    "-blendu": 1,
+    "-blendv": 1,
+    "-bm": 1,
+    "-boost": 1,
+    "-cc": 1,
+    "-clamp": 1,
+    "-imfchan": 1,
+    "-mm": 2,
+    "-o": 3,
+    "-s": 3,
+    "-t": 3,
+    "-texres": 1,
+    "-type": 1,
+}
+
+
+class Map(NamedTuple):
+    """An image as a material names it: its file, and the words behind each option."""
+
+    name: str
+    options: dict[str, list[str]]
+
+    @classmethod
+    def of(cls, text: str) -> Map:
+        """Take apart options and a name that may hold spaces; some programs write options behind the name."""
+        words, options, name = list(re.finditer(r"\S+", text)), dict[str, list[str]](), list[re.Match[str]]()
+        while words:
+            word = words.pop(0)
+            option = word.group().lower()
+            if option not in OPTIONS:
+                name.append(word)
+                continue
+            taken = options[option] = list[str]()
+            while words and len(taken) < OPTIONS[option] and (not taken or is_number(words[0].group())):
+                taken.append(words.pop(0).group())
+        return cls(text[name[0].start() : name[-1].end()] if name else "", options)
+
+    def placement(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """What multiplies texture coordinates (-s), and what is added to them then (-o)."""
+        return self._pair("-s", 1.0), self._pair("-o", 0.0)
+
+    def _pair(self, option: str, default: float) -> tuple[float, float]:
+        numbers = [float(word) for word in self.options.get(option, ()) if is_number(word)]
+        first, second, *_ = [*numbers, default, default]
+        return first, second
+
+
+class Statement(NamedTuple):
+    """One line of a material, with its keyword as it is written there."""
+
+    line: int
+    keyword: str
+    text: str
+
+    def numbers(self, *counts: int) -> list[float]:
+        """Its numbers.
+
+        Raises
+        ------
+        SceneError
+            They are not as many as one of `counts`, or something else.
+        """
+        numbers = floats(uncommented(self.text).split(), self.line)
+        if len(numbers) not in counts:
+            expected = " or ".join(map(str, counts))
+            raise SceneError(f"line {self.line}: {self.keyword}: expected numbers, {expected}, found {len(numbers)}")
+        return numbers
+
+
+@dataclass(frozen=True)
+class Definition:
+    """A material as an MTL file has it.
+
+    Parameters
+    ----------
+    library : Path
+        The file.
+    statements : dict of Statement
+        By their keywords in lower case.
+    maps : dict of Map
+        Those of the statements that name an image.
+    """
+
+    library: Path
+    statements: dict[str, Statement] = field(default_factory=dict)
+    maps: dict[str, Map] = field(default_factory=dict)
+
+    def add(self, statement: Statement) -> None:
+        """Add a statement, in place of one that said the same before."""
+        keyword = statement.keyword.lower()
+        self.statements[keyword] = statement
+        if keyword.startswith("map_"):
+            self.maps[keyword] = Map.of(statement.text)
+
+
+def read_library(path: Path) -> dict[str, Definition]:
+    """The materials of an MTL file by name; of several with the same name the first."""
+    definitions: dict[str, Definition] = {}
+    current = Definition(path)  # what stands before the first material belongs to none
+    for line, keyword, rest in statements(read_text(path)):
+        if keyword.lower() == "newmtl":
+            current = Definition(path)
+            definitions.setdefault(clean(rest), current)
+        else:
+            current.add(Statement(line, keyword, rest))
+    return definitions
+
+
+def clean(name: str) -> str:
+    """The name of a material or an object as it is compared: its words with one space between."""
+    return " ".join(name.split())

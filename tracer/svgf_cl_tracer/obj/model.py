@@ -1,0 +1,113 @@
+"""All of an OBJ file together."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from svgf_cl.errors import shown
+from svgf_cl_tracer.errors import SceneError, SceneWarning
+from svgf_cl_tracer.geometry import Instance, cofactors
+from svgf_cl_tracer.materials import Material
+from svgf_cl_tracer.model import Model, Object
+from svgf_cl_tracer.vectors import Float64
+
+from .faces import Indices
+from .folder import found_inside
+from .library import Definition, clean, read_library
+from .losses import Losses
+from .materials import Materials
+from .surface import Surface, unit
+from .text import NONE, Lines, by_keyword, read_text, uncommented
+
+READ = {"v", "vt", "vn", "f", "o", "g", "s", "usemtl", "mtllib"}
+# Parts of curves and surfaces whose own lines are named, hints to renderers, levels of detail.
+INVISIBLE = {
+    *("vp", "cstype", "deg", "bmat", "step", "parm", "trim", "hole", "scrv", "sp", "end", "con", "ctech", "stech"),
+    *("mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj"),
+}
+
+
+def load_obj(path: Path, to_world: Float64) -> Model:
+    """Load an .obj file; a warning each names what is not shown as the file has it.
+
+    Parameters
+    ----------
+    path : Path
+    to_world : (4, 4) float
+        From the file's frame into the world's.
+
+    Returns
+    -------
+    Model
+        An object for each material of each object (`o`; `g` in a file without any). Its nodes are the file's name and
+        the object's.
+
+    Raises
+    ------
+    SceneError
+        A line makes no sense, or an image cannot be decoded.
+    """
+    losses, lines = Losses(), by_keyword(read_text(path))
+    for keyword in lines.keys() - READ - INVISIBLE:
+        losses.add("lines that are not read", shown(keyword), len(lines[keyword].texts))
+    surface = Surface.read(lines, losses)
+    materials = Materials(path.parent, _definitions(path, lines.get("mtllib", NONE), losses), losses)
+    objects = []
+    for name, material_name, chosen in _parts(lines, surface.lines):
+        colours = surface.colours_of(chosen)
+        known, material = materials.of(material_name, coloured=colours is not None)
+        if material is not None:
+            uv = materials.placed(known, surface.uv_of(chosen))
+            placed = _placed(surface.positions_of(chosen), surface.normals_of(chosen), uv, material, to_world)
+            objects.append(Object(placed, (path.name, name), known))
+    for loss in losses.lines():
+        warnings.warn(f"{path}: {loss}", SceneWarning, stacklevel=2)
+    return Model(objects)
+
+
+def _placed(
+    corners: Float64, normals: Float64 | None, uv: Float64 | None, material: Material, to_world: Float64
+) -> Instance:
+    if normals is not None:
+        normals = unit(normals @ cofactors(to_world[:3, :3]).T)
+    return Instance(corners @ to_world[:3, :3].T + to_world[:3, 3], material, normals, uv)
+
+
+def _parts(lines: Mapping[str, Lines], at: Indices) -> Iterator[tuple[str, str, Indices]]:
+    """Name of the object, of the material, and the triangles that have both, by the lines `at` which these stand."""
+    objects, object_of = _named(lines.get("o", lines.get("g", NONE)), at)
+    materials, material_of = _named(lines.get("usemtl", NONE), at)
+    keys = object_of * len(materials) + material_of
+    parts, first, part_of = np.unique(keys, return_index=True, return_inverse=True)
+    triangles = np.split(np.argsort(part_of, kind="stable"), np.cumsum(np.bincount(part_of))[:-1])
+    for part in np.argsort(first):
+        yield objects[parts[part] // len(materials)], materials[parts[part] % len(materials)], triangles[part]
+
+
+def _named(lines: Lines, at: Indices) -> tuple[list[str], Indices]:
+    """The names on `lines`, each once, and the number of the one that counts on each of the lines `at`."""
+    numbers = {"": 0}
+    number = np.array([0, *(numbers.setdefault(clean(text), len(numbers)) for text in lines.texts)])
+    return list(numbers), number[lines.in_force(at)]
+
+
+def _definitions(path: Path, libraries: Lines, losses: Losses) -> dict[str, Definition]:
+    """The materials of all libraries that a file names; of several with the same name the first."""
+    definitions: dict[str, Definition] = {}
+    for text in libraries.texts:
+        # A name may hold spaces; or several names are on a line.
+        names = [text] if found_inside(path.parent, text, path.parent) else uncommented(text).split()
+        for name in names:
+            library = found_inside(path.parent, name, path.parent)
+            if library is None:
+                losses.add("material libraries that are not in its folder or below", shown(name))
+                continue
+            try:
+                definitions = read_library(library) | definitions
+            except SceneError as error:
+                raise SceneError(f"{library.name}: {error}") from error
+    return definitions
