@@ -1,24 +1,23 @@
-"""The faces of an OBJ file: whose corners they have, and what each belongs to."""
+"""The faces of an OBJ file: what is at their corners."""
 
 from __future__ import annotations
 
-from itertools import chain
+import re
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from svgf_cl.errors import shown
 from svgf_cl_tracer.errors import SceneError
 
-from .text import Lines, uncommented
-
-Indices = NDArray[np.int64]
+from .text import Indices, Lines, parsed, uncommented
 
 # Where a corner names no texture coordinates or no normal.
 ABSENT = -1
-# In its place while the text is read, where any number that a file may hold has a meaning.
+# In its place while the text is read, where -1 means the last one.
 BLANK = np.iinfo(np.int64).min
+
+CORNER = re.compile(r"[+-]?\d+(/([+-]?\d+)?){0,2}")
 
 # What the numbers of a corner are indices of.
 KINDS = ("v", "vt", "vn")
@@ -41,29 +40,29 @@ class Faces(NamedTuple):
         Raises
         ------
         SceneError
-            Something else than indices is on a line, or there is nothing with such an index.
+            Something else than corners is on a line, or there is nothing with such an index.
         """
-        rows = [uncommented(text).split() for text in faces.texts]
-        counts = np.fromiter(map(len, rows), np.int64, len(rows))
+        text, starts, counts = faces.words()
+        try:
+            given = _numbers(text, starts)
+        except ValueError as error:
+            raise SceneError(_complaint(faces)) from error
         lines = np.array(faces.numbers, np.int64)
-        words = list(chain.from_iterable(rows))
-        numbers = _numbers(words, lines.repeat(counts))
-        corners = np.full(numbers.shape, ABSENT)
-        for column, (kind, element) in enumerate(zip(KINDS, elements, strict=True)):
-            before = element.in_force(lines).repeat(counts)
-            given = numbers[:, column]
-            index = np.where(given < 0, before + given, given - 1)
-            blank = given == BLANK
-            wrong = ~blank & ((given == 0) | (index < 0) | (index >= len(element.numbers)))
-            wrong |= blank & (kind == "v")
+        line_of = lines.repeat(counts)
+        corners = np.full(given.shape, ABSENT)
+        for column, element in enumerate(elements):
+            number, there = given[:, column], len(element.numbers)
+            index = np.where(number < 0, element.in_force(lines).repeat(counts) + number, number - 1)
+            wrong = (number == 0) | (index < 0) | (index >= there)
+            if column:
+                wrong &= number != BLANK
             if wrong.any():
                 first = int(wrong.argmax())
-                line = lines.repeat(counts)[first]
                 raise SceneError(
-                    f"line {line}: expected the number of one of {len(element.numbers)} lines {kind} "
-                    f"from 1 or, backwards, -1 on, found {given[first]}"
+                    f"line {line_of[first]}: expected a number in 1..{there} of a line {KINDS[column]}, or one below 0 "
+                    f"of a line above, found {number[first]}"
                 )
-            corners[:, column] = np.where(blank, ABSENT, index)
+            corners[:, column] = np.where(number == BLANK, ABSENT, index)
         return cls(counts, lines, corners)
 
     def with_area(self) -> Faces:
@@ -72,31 +71,25 @@ class Faces(NamedTuple):
         return Faces(self.counts[kept], self.lines[kept], self.corners[kept.repeat(self.counts)])
 
 
-def _numbers(words: list[str], lines: Indices) -> Indices:
+def _numbers(text: bytes, starts: Indices) -> Indices:
     """The numbers (C, 3) of corners such as ``1``, ``1/2``, ``1//3`` and ``1/2/3``; `BLANK` where there is none."""
-    slashes = np.fromiter((word.count("/") for word in words), np.int64, len(words))
-    text = " ".join(words) + " "
+    places = np.flatnonzero(np.frombuffer(text, np.uint8) == ord("/"))
+    slashes = np.bincount(np.searchsorted(starts, places, "right") - 1, minlength=len(starts))
     if slashes.max(initial=0) > 2:
-        raise SceneError(_complaint(words, lines))
-    if slashes.any():
-        text = text.replace("//", f"/{BLANK}/").replace("/ ", f"/{BLANK} ").replace("/", " ")
+        raise ValueError("a corner of more than three numbers")
+    if len(places):
+        blank = b"/%d" % BLANK
+        text = re.sub(rb"/(?=[/\s])", blank, text).replace(b"/", b" ")
     given = np.arange(3) <= slashes[:, None]
     numbers = np.full(given.shape, BLANK)
-    try:
-        numbers[given] = np.fromiter(map(int, text.split()), np.int64)
-    except (ValueError, OverflowError) as error:
-        raise SceneError(_complaint(words, lines)) from error
+    numbers[given] = parsed(text, given.sum(), np.int64)
     return numbers
 
 
-def _complaint(words: list[str], lines: Indices) -> str:
-    """What is wrong with the first of `words` that is no corner."""
-    for word, line in zip(words, lines, strict=True):
-        parts = word.split("/")
-        try:
-            good = len(parts) <= 3 and all(abs(int(part)) < -BLANK for part in parts if part) and parts[0]
-        except ValueError:
-            good = False
-        if not good:
-            return f"line {line}: expected corners such as 1, 1/2, 1//3 or 1/2/3, found {shown(word)}"
+def _complaint(faces: Lines) -> str:
+    """What is wrong with the first line that does not consist of corners."""
+    for line, text in zip(faces.numbers, faces.texts, strict=True):
+        for word in uncommented(text).split():
+            if not CORNER.fullmatch(word):
+                return f"line {line}: expected corners such as 1, 1/2, 1//3 or 1/2/3, found {shown(word)}"
     return "expected corners of faces, found something else"

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from svgf_cl_tracer.errors import SceneError
 
-from .text import floats, is_number, read_text, statements, uncommented
+from .text import clean, floats, is_number, read_text, statements, uncommented
 
 # Options of an image, and how many words follow each at most: one, and further ones where they are numbers.
 OPTIONS = {
@@ -119,8 +119,3 @@ def read_library(path: Path) -> dict[str, Definition]:
         else:
             current.add(Statement(line, keyword, rest))
     return definitions
-
-
-def clean(name: str) -> str:
-    """The name of a material or an object as it is compared: its words with one space between."""
-    return " ".join(name.split())

@@ -13,10 +13,10 @@ from svgf_cl_tracer.materials import Colour, Material
 from svgf_cl_tracer.textures import Image
 from svgf_cl_tracer.vectors import Float64
 
-from .library import Definition, Statement, clean
+from .library import Definition, Statement
 from .losses import Losses
 from .maps import PLACED, Maps
-from .text import is_number, uncommented
+from .text import clean, is_number, uncommented
 
 WHITE = (1.0, 1.0, 1.0)
 
@@ -32,6 +32,8 @@ READ = {"kd", "ke", "d", "tr", "map_kd", "map_ke", "map_d", *GLOSS}
 INVISIBLE = {"ka", "map_ka", "ni", "ns", "map_ns", "sharpness", "map_aat"}
 # Models of illumination that are glass; others say what the colours say too.
 GLASS = {"4", "6", "7", "9"}
+
+UNDEFINED = Definition(Path())
 
 
 class Materials:
@@ -77,10 +79,8 @@ class Materials:
         return name, self._made[name]
 
     def placed(self, name: str, uv: Float64 | None) -> Float64 | None:
-        """Texture coordinates (..., 2) where the images of the material called `name` want them."""
-        if name not in self._definitions:
-            return uv
-        definition = self._definitions[name]
+        """Texture coordinates (..., 2), NaN where there are none, as the material called `name` wants them."""
+        definition = self._definitions.get(name, UNDEFINED)
         if any(keyword in definition.maps for keyword in PLACED) and (uv is None or np.isnan(uv).any()):
             kind = "materials with an image on faces without texture coordinates (vt), which show one texel of it"
             self._losses.add(kind, shown(name))

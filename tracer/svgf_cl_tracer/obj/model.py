@@ -15,13 +15,12 @@ from svgf_cl_tracer.materials import Material
 from svgf_cl_tracer.model import Model, Object
 from svgf_cl_tracer.vectors import Float64
 
-from .faces import Indices
 from .folder import found_inside
-from .library import Definition, clean, read_library
+from .library import Definition, read_library
 from .losses import Losses
 from .materials import Materials
 from .surface import Surface, unit
-from .text import NONE, Lines, by_keyword, read_text, uncommented
+from .text import NONE, Indices, Lines, by_keyword, read_text, uncommented
 
 READ = {"v", "vt", "vn", "f", "o", "g", "s", "usemtl", "mtllib"}
 # Parts of curves and surfaces whose own lines are named, hints to renderers, levels of detail.
@@ -79,20 +78,13 @@ def _placed(
 
 def _parts(lines: Mapping[str, Lines], at: Indices) -> Iterator[tuple[str, str, Indices]]:
     """Name of the object, of the material, and the triangles that have both, by the lines `at` which these stand."""
-    objects, object_of = _named(lines.get("o", lines.get("g", NONE)), at)
-    materials, material_of = _named(lines.get("usemtl", NONE), at)
+    objects, object_of = lines.get("o", lines.get("g", NONE)).named(at)
+    materials, material_of = lines.get("usemtl", NONE).named(at)
     keys = object_of * len(materials) + material_of
     parts, first, part_of = np.unique(keys, return_index=True, return_inverse=True)
     triangles = np.split(np.argsort(part_of, kind="stable"), np.cumsum(np.bincount(part_of))[:-1])
     for part in np.argsort(first):
         yield objects[parts[part] // len(materials)], materials[parts[part] % len(materials)], triangles[part]
-
-
-def _named(lines: Lines, at: Indices) -> tuple[list[str], Indices]:
-    """The names on `lines`, each once, and the number of the one that counts on each of the lines `at`."""
-    numbers = {"": 0}
-    number = np.array([0, *(numbers.setdefault(clean(text), len(numbers)) for text in lines.texts)])
-    return list(numbers), number[lines.in_force(at)]
 
 
 def _definitions(path: Path, libraries: Lines, losses: Losses) -> dict[str, Definition]:

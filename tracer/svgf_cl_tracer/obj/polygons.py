@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from svgf_cl_tracer.vectors import Float64
 
-Indices = NDArray[np.int64]
+from .text import Indices
 
 
 def triangulate(points: Float64, counts: Indices) -> tuple[Indices, Indices]:
@@ -70,7 +70,7 @@ def _cut(points: Float64) -> Indices:
     if normal[axis] < 0.0:
         flat[:, 0] *= -1.0
     cut = mapbox_earcut.triangulate_float64(flat, np.array([len(flat)], np.uint32)).reshape(-1, 3).astype(np.int64)
-    first, second, third = flat[cut].transpose(1, 0, 2)
-    turned = np.cross(second - first, third - first) < 0.0
+    (ux, uy), (vx, vy) = (flat[cut[:, 1]] - flat[cut[:, 0]]).T, (flat[cut[:, 2]] - flat[cut[:, 0]]).T
+    turned = ux * vy < uy * vx
     cut[turned] = cut[turned, ::-1]
     return cut

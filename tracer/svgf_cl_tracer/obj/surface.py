@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from svgf_cl_tracer.textures import srgb_to_linear
 from svgf_cl_tracer.vectors import Float64
 
-from .faces import ABSENT, Faces, Indices
+from .faces import ABSENT, Faces
 from .losses import Losses
 from .polygons import triangulate
-from .text import NONE, Lines
+from .text import NONE, Indices, Lines
 
-FLAT = ("", "0", "off")  # what `s` says where there is no smoothing group
+FLAT: tuple[list[str], ...] = ([], ["0"], ["off"])  # what `s` says where there is no smoothing group
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,12 +69,11 @@ class Surface:
 
     def smoothed(self, groups: Lines) -> Surface:
         """The surface with normals where triangles without any are in a smoothing group: the mean of those around."""
-        numbers: dict[str, int] = {}
-        group = np.array([0, *(0 if t in FLAT else numbers.setdefault(t, len(numbers) + 1) for t in groups.words())])
-        inside = group[groups.in_force(self.lines)]
-        chosen = np.flatnonzero((inside > 0) & (self.corners[..., 2] == ABSENT).any(1))
+        names, group = groups.named(self.lines)
+        smooth = np.array([name.split()[:1] not in FLAT for name in names])
+        chosen = np.flatnonzero(smooth[group] & (self.corners[..., 2] == ABSENT).any(1))
         vertex = self.corners[chosen, :, 0]
-        keys, number = np.unique(vertex * len(group) + inside[chosen, None], return_inverse=True)
+        keys, number = np.unique(vertex * len(names) + group[chosen, None], return_inverse=True)
         sums = np.zeros((len(keys), 3))
         np.add.at(sums, number.ravel(), _areas(self.positions[vertex]).repeat(3, axis=0))
         corners = self.corners.copy()

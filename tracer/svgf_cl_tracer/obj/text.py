@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import codecs
+import re
+import warnings
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from itertools import chain
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +20,16 @@ from svgf_cl.errors import shown
 from svgf_cl_tracer.errors import SceneError
 from svgf_cl_tracer.vectors import Float64
 
+Indices = NDArray[np.int64]
+
 BYTE_ORDER_MARKS = {
     codecs.BOM_UTF8: "utf-8-sig",
     codecs.BOM_UTF16_LE: "utf-16",
     codecs.BOM_UTF16_BE: "utf-16",
 }
+
+# How the lines begin that come by the million, and their keyword.
+COMMON = {"v ": "v", "v\t": "v", "vt": "vt", "vn": "vn", "f ": "f", "f\t": "f"}
 
 
 @dataclass
@@ -38,15 +47,14 @@ class Lines:
         SceneError
             A line has fewer than `least` numbers, something else, or what is not `finite`.
         """
-        rows = [uncommented(text).split()[:most] for text in self.texts]
-        counts = np.fromiter(map(len, rows), np.int64, len(rows))
+        text, _, counts = self.words()
         try:
-            flat = np.fromiter(map(float, chain.from_iterable(rows)), np.float64, counts.sum())
+            flat = parsed(text, counts.sum(), np.float64)
         except ValueError:
-            for line, row in zip(self.numbers, rows, strict=True):
-                floats(row, line)
+            for line, words in zip(self.numbers, self.texts, strict=True):
+                floats(uncommented(words).split(), line)
             raise
-        given = np.arange(most) < counts[:, None]
+        given = np.arange(counts.max(initial=most)) < counts[:, None]
         table = np.full(given.shape, np.nan)
         table[given] = flat
         wrong = counts < least
@@ -56,22 +64,36 @@ class Lines:
             first = int(wrong.argmax())
             expected = f"{least} finite numbers" if finite else f"{least} numbers"
             raise SceneError(f"line {self.numbers[first]}: expected {expected}, found {shown(self.texts[first])}")
-        return table
+        return table[:, :most]
 
-    def words(self) -> list[str]:
-        """What follows the keyword on each line, without comments."""
-        return [uncommented(text).strip() for text in self.texts]
+    def words(self) -> tuple[bytes, Indices, Indices]:
+        """All lines as one text without comments, where in it each word begins, and how many words each line has."""
+        joined = "\n".join([*self.texts, ""])
+        text = re.sub("#.*", "", joined).encode("ascii", "replace")
+        codes = np.frombuffer(text, np.uint8)
+        blank = (codes == ord(" ")) | ((codes >= ord("\t")) & (codes <= ord("\r")))
+        starts = np.flatnonzero(~blank & np.append(True, blank[:-1])[: len(blank)])
+        counts = np.diff(np.searchsorted(starts, np.flatnonzero(codes == ord("\n"))), prepend=0)
+        return text, starts, counts
 
-    def in_force(self, lines: NDArray[np.int64]) -> NDArray[np.int64]:
+    def in_force(self, lines: Indices) -> Indices:
         """How many of these lines stand above each of `lines`, numbers in the file: the last of them counts there."""
         return np.searchsorted(self.numbers, lines)
+
+    def named(self, lines: Indices) -> tuple[list[str], Indices]:
+        """The names on these lines, each once behind an empty one, and the number of the one in force at `lines`."""
+        numbers = {"": 0}
+        number = np.array([0, *(numbers.setdefault(clean(text), len(numbers)) for text in self.texts)])
+        return list(numbers), number[self.in_force(lines)]
 
 
 NONE = Lines()
 
 
-def read_text(path: Path) -> str:
-    """The text of a file: UTF-8 or UTF-16 where it says so or is such, else Latin-1, with lines that end alike.
+def read_text(path: Path) -> list[str]:
+    """The lines of a file: UTF-8 or UTF-16 where it says so or is such, else Latin-1.
+
+    A backslash at the end of a line joins the next one to it, in whose place an empty one is left.
 
     Raises
     ------
@@ -86,42 +108,69 @@ def read_text(path: Path) -> str:
         text = data.decode("latin-1")
     if "\0" in text:
         raise SceneError("expected a text, found zeros in it")
-    return text.replace("\r\n", "\n").replace("\r", "\n")
+    text = text.replace("\r\n", "\n").replace("\r", "\n")
+    return list(_joined(text.split("\n"))) if "\\\n" in text else text.split("\n")
 
 
-def statements(text: str) -> Iterator[tuple[int, str, str]]:
-    """Number of the line, keyword, and what follows it, of each line that is neither empty nor a comment.
-
-    A backslash at the end of a line joins the next one to it.
-    """
-    begun, first = "", 0
-    for number, line in enumerate(text.split("\n"), 1):
-        if begun:
-            line = begun + line
-        else:
-            first = number
+def _joined(lines: list[str]) -> Iterator[str]:
+    begun, left = "", 0
+    for line in lines:
         if line.endswith("\\"):
-            begun = line[:-1] + " "
+            begun, left = f"{begun}{line[:-1]} ", left + 1
             continue
-        begun = ""
-        keyword, *rest = line.split(None, 1)[:2] or ("#",)
+        yield begun + line
+        yield from left * [""]
+        begun, left = "", 0
+    yield begun
+
+
+def statements(lines: list[str], first: int = 1) -> Iterator[tuple[int, str, str]]:
+    """Number, counted from `first`, keyword and what follows it, of each line that is neither empty nor a comment."""
+    for number, line in enumerate(lines, first):
+        keyword, *rest = line.split(None, 1) or ("#",)
         if not keyword.startswith("#"):
-            yield first, keyword, rest[0] if rest else ""
+            yield number, keyword, rest[0] if rest else ""
 
 
-def by_keyword(text: str) -> dict[str, Lines]:
-    """All lines of `text` by their keyword in lower case; there are none of one that it does not have."""
+def by_keyword(lines: list[str]) -> dict[str, Lines]:
+    """The lines of a file by their keyword in lower case."""
     found = defaultdict[str, Lines](Lines)
-    for number, keyword, rest in statements(text):
-        lines = found[keyword.lower()]
-        lines.numbers.append(number)
-        lines.texts.append(rest)
+    number = 1
+    for beginning, alike in groupby(lines, itemgetter(slice(2))):
+        run = list(alike)
+        if beginning in COMMON:
+            common = found[COMMON[beginning]]
+            common.numbers += range(number, number + len(run))
+            common.texts += [line[2:] for line in run]
+        else:
+            for place, keyword, rest in statements(run, number):
+                found[keyword.lower()].numbers.append(place)
+                found[keyword.lower()].texts.append(rest)
+        number += len(run)
     return dict(found)
+
+
+def parsed(text: bytes, count: int, kind: type[Any]) -> NDArray[Any]:
+    """The `count` numbers of some kind that a text consists of; `ValueError` where it consists of something else."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", DeprecationWarning)
+        try:
+            numbers = np.fromstring(text, kind, sep=" ") if count else np.zeros(0, kind)
+        except DeprecationWarning as error:  # how NumPy calls what is no number
+            raise ValueError(str(error)) from error
+    if len(numbers) != count:
+        raise ValueError(f"expected {count} numbers, found {len(numbers)}")
+    return numbers
 
 
 def uncommented(text: str) -> str:
     """`text` up to a comment. Names may hold a #: this is for numbers."""
     return text[: text.index("#")] if "#" in text else text
+
+
+def clean(name: str) -> str:
+    """The name of a material or an object as it is compared: its words with one space between."""
+    return " ".join(name.split())
 
 
 def floats(words: list[str], line: int) -> list[float]:
