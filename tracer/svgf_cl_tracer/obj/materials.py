@@ -15,7 +15,7 @@ from svgf_cl_tracer.vectors import Float64
 
 from .library import Definition, Statement
 from .losses import Losses
-from .maps import PLACED, Maps
+from .maps import Maps
 from .text import clean, is_number, uncommented
 
 WHITE = (1.0, 1.0, 1.0)
@@ -32,8 +32,6 @@ READ = {"kd", "ke", "d", "tr", "map_kd", "map_ke", "map_d", *GLOSS}
 INVISIBLE = {"ka", "map_ka", "ni", "ns", "map_ns", "sharpness", "map_aat"}
 # Models of illumination that are glass; others say what the colours say too.
 GLASS = {"4", "6", "7", "9"}
-
-UNDEFINED = Definition(Path())
 
 
 class Materials:
@@ -80,11 +78,14 @@ class Materials:
 
     def placed(self, name: str, uv: Float64 | None) -> Float64 | None:
         """Texture coordinates (..., 2), NaN where there are none, as the material called `name` wants them."""
-        definition = self._definitions.get(name, UNDEFINED)
-        if any(keyword in definition.maps for keyword in PLACED) and (uv is None or np.isnan(uv).any()):
+        material = self._made.get(name)
+        if material is None:
+            return None if uv is None else np.nan_to_num(uv)
+        textured = material.base_texture is not None or material.emission_texture is not None
+        if textured and (uv is None or np.isnan(uv).any()):
             kind = "materials with an image on faces without texture coordinates (vt), which show one texel of it"
             self._losses.add(kind, shown(name))
-        return None if uv is None else self._maps.placed(definition, np.nan_to_num(uv))
+        return None if uv is None else self._maps.placed(self._definitions[name], np.nan_to_num(uv))
 
     def _make(self, name: str, definition: Definition) -> Material | None:
         for statement in filter(_is_lost, definition.statements.values()):

@@ -68,14 +68,14 @@ class Surface:
         return flat.smoothed(lines.get("s", NONE))
 
     def smoothed(self, groups: Lines) -> Surface:
-        """The surface with normals where triangles without any are in a smoothing group: the mean of those around."""
+        """The surface with normals where triangles without any are in a smoothing group: the mean of the faces around."""
         names, group = groups.named(self.lines)
         smooth = np.array([name.split()[:1] not in FLAT for name in names])
         chosen = np.flatnonzero(smooth[group] & (self.corners[..., 2] == ABSENT).any(1))
         vertex = self.corners[chosen, :, 0]
         keys, number = np.unique(vertex * len(names) + group[chosen, None], return_inverse=True)
         sums = np.zeros((len(keys), 3))
-        np.add.at(sums, number.ravel(), _areas(self.positions[vertex]).repeat(3, axis=0))
+        np.add.at(sums, number.reshape(vertex.shape), _weighted_normals(self.positions[vertex]))
         corners = self.corners.copy()
         corners[chosen, :, 2] = len(self.normals) + number.reshape(vertex.shape)
         normals = np.concatenate([self.normals, unit(sums)])
@@ -137,6 +137,14 @@ def _values(values: Float64, index: Indices) -> Float64 | None:
 def _areas(corners: Float64) -> Float64:
     """Normals (n, 3) of triangles, twice as long as their areas."""
     return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+
+def _weighted_normals(corners: Float64) -> Float64:
+    """The normal at each corner (n, 3, 3) of triangles, as long as its angle: however a face is cut, it counts alike."""
+    after, before = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
+    normals = np.cross(after, before)
+    angles = np.arctan2(np.linalg.norm(normals, axis=2), (after * before).sum(2))
+    return unit(normals) * angles[..., None]
 
 
 def unit(vectors: NDArray[np.float64]) -> Float64:
