@@ -68,7 +68,7 @@ class Surface:
         return flat.smoothed(lines.get("s", NONE))
 
     def smoothed(self, groups: Lines) -> Surface:
-        """The surface with normals where triangles without any are in a smoothing group: the mean of the faces around."""
+        """The surface with normals in smoothing groups, the mean of the faces around, where the file has none."""
         names, group = groups.named(self.lines)
         smooth = np.array([name.split()[:1] not in FLAT for name in names])
         chosen = np.flatnonzero(smooth[group] & (self.corners[..., 2] == ABSENT).any(1))
@@ -140,11 +140,12 @@ def _areas(corners: Float64) -> Float64:
 
 
 def _weighted_normals(corners: Float64) -> Float64:
-    """The normal at each corner (n, 3, 3) of triangles, as long as its angle: however a face is cut, it counts alike."""
+    """Normals (n, 3, 3) at corners of triangles, as long as their angles: however a face is cut, it counts alike."""
     after, before = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
     normals = np.cross(after, before)
     angles = np.arctan2(np.linalg.norm(normals, axis=2), (after * before).sum(2))
-    return unit(normals) * angles[..., None]
+    weighted: Float64 = unit(normals) * angles[..., None]
+    return weighted
 
 
 def unit(vectors: NDArray[np.float64]) -> Float64:
