@@ -3,12 +3,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import PIL.Image
 import pytest
 
-from svgf_cl_tracer import SceneError, meshes
 from svgf_cl_tracer.materials import Material
-from svgf_cl_tracer.meshes import Images, Mesh, instance
+from svgf_cl_tracer.meshes import Mesh, instance
 from svgf_cl_tracer.motion import Keyframes, Motion, Track
 from tests.tracer.gltf_files import CORNERS, NORMAL
 
@@ -57,20 +55,3 @@ def test_a_flattened_object_is_no_error(scale: tuple[float, float, float]) -> No
     flat = instance(square(smooth=True), scaled(*scale), GREY)
     assert np.isfinite(flat.corners).all()
     assert np.isfinite(flat.normals).all()
-
-
-def test_an_image_is_unpacked_once_for_each_use() -> None:
-    images, image = Images(), PIL.Image.new("P", (2, 3))
-    colour, alpha = images.pixels(image, "RGB"), images.pixels(image, "RGBA")
-    assert (colour.shape, alpha.shape) == ((3, 2, 3), (3, 2, 4))
-    assert images.pixels(image, "RGB") is colour
-    assert images.pixels(None, "RGB") is None
-
-
-def test_images_that_are_too_large_together_are_not_unpacked(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(meshes, "MAX_PIXELS", 12)
-    images, first = Images(), PIL.Image.new("RGB", (2, 3))
-    for image in (first, first, PIL.Image.new("RGB", (2, 3))):
-        images.pixels(image, "RGB")
-    with pytest.raises(SceneError, match="images: expected at most 12 pixels in all"):
-        images.pixels(PIL.Image.new("RGB", (1, 1)), "RGB")

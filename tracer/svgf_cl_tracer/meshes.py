@@ -1,4 +1,4 @@
-"""From what files hold to what the tracer takes: triangles, colours, images."""
+"""From what files hold to what the tracer takes: triangles, normals, colours."""
 
 from __future__ import annotations
 
@@ -6,17 +6,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import PIL.Image
 from numpy.typing import NDArray
 
-from .errors import SceneError
 from .geometry import Instance
 from .materials import Colour, Material
 from .motion import Motion
-from .textures import Image
-
-# Of all textures of a file, 1 GB in memory: a few kilobytes may stand for as much.
-MAX_PIXELS = 2**28
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,29 +48,3 @@ def colour(values: Any) -> Colour:
     """Three numbers from three or more, or from one that stands for all."""
     r, g, b = np.broadcast_to(np.ravel(values).astype(float)[:3], 3)
     return float(r), float(g), float(b)
-
-
-class Images:
-    """Pixels of a file's images, each unpacked once however many materials show it."""
-
-    def __init__(self) -> None:
-        self._unpacked: dict[tuple[int, str], tuple[PIL.Image.Image, Image]] = {}
-        self._room = MAX_PIXELS
-
-    def pixels(self, image: PIL.Image.Image | None, mode: str) -> Image | None:
-        """The image as (h, w, channels) with the channels of `mode`, such as ``"RGB"``; None for none.
-
-        Raises
-        ------
-        SceneError
-            The file's images are too large together.
-        """
-        if image is None:
-            return None
-        key = (id(image), mode)
-        if key not in self._unpacked:
-            self._room -= image.width * image.height
-            if self._room < 0:
-                raise SceneError(f"images: expected at most {MAX_PIXELS} pixels in all, found more")
-            self._unpacked[key] = (image, np.asarray(image.convert(mode)))  # the image stays, and with it its id
-        return self._unpacked[key][1]

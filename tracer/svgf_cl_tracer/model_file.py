@@ -33,7 +33,7 @@ def load_model(path: Path, to_world: Float64) -> Model:
         return model
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from error
-    # Files hold anything, and trimesh raises whatever comes of it: to the user the file is unreadable.
+    # Files hold anything, and whatever is raised comes of it: to the user the file is unreadable.
     except Exception as error:
         reason = " ".join(f"{type(error).__name__}: {error}".split())
         raise SceneError(f"{path}: cannot be read as glTF, GLB or OBJ ({reason})") from error

@@ -57,7 +57,7 @@ def _pack(image: Image) -> NDArray[np.uint32]:
 
 @compiled
 def texture_colour(textures: Textures, texture: int, u: float, v: float) -> Vec3:
-    """Linear colour of a texture at (u, v); v points up, as in trimesh."""
+    """Linear colour of a texture at (u, v); v points up."""
     first, second, third, fourth, fx, fy = _texels(textures, texture, u, v)
     linear = textures.linear
     red = _mix(linear[first & 255], linear[second & 255], linear[third & 255], linear[fourth & 255], fx, fy)

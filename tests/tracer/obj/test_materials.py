@@ -127,7 +127,7 @@ def test_a_material_that_is_nowhere_is_grey_and_named(tmp_path: Path, name: str)
     (item,) = model.objects
     assert (item.material, item.instance.material.base_colour) == ("wood", Material.base_colour)
     expected = ["material libraries that are not in its folder or below: 'b.mtl'"] if name else []
-    assert lost == [*expected, "materials that no library defines, shown grey: 'wood'"]
+    assert lost == [*expected, "materials that no library defines, shown in a plain colour: 'wood'"]
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "latin-1"])

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,8 @@ import pytest
 
 from svgf_cl_tracer import load_scene
 from svgf_cl_tracer.materials import Material
-from svgf_cl_tracer.obj import load_obj
+from svgf_cl_tracer.obj import load_obj, materials, model
+from svgf_cl_tracer.textures import srgb_to_linear
 from tests.tracer.gltf_files import png
 from tests.tracer.obj.files import FACE, SQUARE, instance_of, read
 
@@ -36,8 +38,8 @@ def test_without_material_it_is_grey(tmp_path: Path) -> None:
 def test_nothing_outside_its_folder_is_read(tmp_path: Path) -> None:
     (tmp_path / "inner").mkdir()
     (tmp_path / "secret.mtl").write_text("newmtl m\nKd 0.5 1 0.25\n")
-    model, lost = read(tmp_path / "inner", f"mtllib ../secret.mtl\nusemtl m\n{POINTS}f 1 2 3\n")
-    assert model.objects[0].instance.material.base_colour == Material.base_colour
+    loaded, lost = read(tmp_path / "inner", f"mtllib ../secret.mtl\nusemtl m\n{POINTS}f 1 2 3\n")
+    assert loaded.objects[0].instance.material.base_colour == Material.base_colour
     assert lost[0] == "material libraries that are not in its folder or below: '../secret.mtl'"
 
 
@@ -45,8 +47,8 @@ def test_an_object_for_each_material_of_each_object(tmp_path: Path) -> None:
     face = "f 1 2 3\n"
     one = f"{face}o one\n{face}usemtl a\n{face}g part\n{face}"
     text = f"{POINTS}{one}o  two\t2 \n{face}usemtl b\n{face}o one\n{face}{face}"
-    model, _ = read(tmp_path, text)
-    found = [(item.nodes, item.material, len(item.instance.corners)) for item in model.objects]
+    loaded, _ = read(tmp_path, text)
+    found = [(item.nodes, item.material, len(item.instance.corners)) for item in loaded.objects]
     assert found == [
         (("a.obj", ""), "", 1),
         (("a.obj", "one"), "", 1),
@@ -58,8 +60,8 @@ def test_an_object_for_each_material_of_each_object(tmp_path: Path) -> None:
 
 
 def test_groups_are_objects_where_there_are_no_others(tmp_path: Path) -> None:
-    model, _ = read(tmp_path, f"{POINTS}g a b\nf 1 2 3\ng\nf 1 2 3\n")
-    assert [item.nodes for item in model.objects] == [("a.obj", "a b"), ("a.obj", "")]
+    loaded, _ = read(tmp_path, f"{POINTS}g a b\nf 1 2 3\ng\nf 1 2 3\n")
+    assert [item.nodes for item in loaded.objects] == [("a.obj", "a b"), ("a.obj", "")]
 
 
 def test_a_description_moves_and_paints_by_name(tmp_path: Path) -> None:
@@ -90,8 +92,8 @@ def test_several_libraries(tmp_path: Path, line: str, files: tuple[str, str]) ->
     (tmp_path / "sub").mkdir()
     for name, library in zip(files, ("newmtl a\nKd 1 0 0\n", "newmtl b\nKd 0 1 0\nnewmtl a\nKd 0\n"), strict=True):
         (tmp_path / name).write_text(library)
-    model, lost = read(tmp_path, f"{line}\n{POINTS}usemtl a # red\nf 1 2 3\nusemtl b\nf 1 2 3\n")
-    assert [item.instance.material.base_colour for item in model.objects] == [(1, 0, 0), (0, 1, 0)]
+    loaded, lost = read(tmp_path, f"{line}\n{POINTS}usemtl a # red\nf 1 2 3\nusemtl b\nf 1 2 3\n")
+    assert [item.instance.material.base_colour for item in loaded.objects] == [(1, 0, 0), (0, 1, 0)]
     assert lost == []
 
 
@@ -99,8 +101,8 @@ def test_images_lie_beside_the_library_that_names_them(tmp_path: Path) -> None:
     (tmp_path / "sub").mkdir()
     (tmp_path / "sub" / "a.png").write_bytes(png(PIXELS))
     (tmp_path / "sub" / "b.mtl").write_text("newmtl m\nmap_Kd a.png\n")
-    model, lost = read(tmp_path, f"mtllib sub/b.mtl\n{SQUARE}usemtl m\n{FACE}")
-    np.testing.assert_array_equal(model.objects[0].instance.material.base_texture, PIXELS)
+    loaded, lost = read(tmp_path, f"mtllib sub/b.mtl\n{SQUARE}usemtl m\n{FACE}")
+    np.testing.assert_array_equal(loaded.objects[0].instance.material.base_texture, PIXELS)
     assert lost == []
 
 
@@ -132,3 +134,27 @@ def test_a_smoothing_group_has_the_mean_of_the_normals_around(tmp_path: Path) ->
     np.testing.assert_allclose(apart[0], 3 * [slope], atol=1e-12)
     own = instance_of(tmp_path, roof + "vn 1 0 0\ns 1\nf 1//1 4//1 3//1 2//1\n").normals
     np.testing.assert_array_equal(own, np.broadcast_to((1, 0, 0), (2, 3, 3)))
+
+
+@pytest.mark.parametrize("scale", [1, 255])
+def test_vertex_colours_are_srgb_and_multiply_the_material(tmp_path: Path, scale: int) -> None:
+    points = f"v 0 0 0 {scale} 0 0\nv 1 0 0 {0.5 * scale} 0 {scale}\nv 1 1 0\n"
+    expected = [[(1, 0, 0), (srgb_to_linear(np.array(0.5)), 0, 1), (1, 1, 1)]]
+    plain = instance_of(tmp_path, f"{points}f 1 2 3\n")
+    np.testing.assert_allclose(plain.colours, expected)
+    assert plain.material.base_colour == (1, 1, 1)
+    loaded, lost = read(tmp_path, f"mtllib a.mtl\n{points}usemtl m\nf 1 2 3\n", "newmtl m\nKd 0.5\n")
+    np.testing.assert_allclose(loaded.objects[0].instance.colours, expected)
+    assert (loaded.objects[0].instance.material.base_colour, lost) == ((0.5, 0.5, 0.5), [])
+
+
+def test_the_page_names_all_that_is_read() -> None:
+    page = (Path(__file__).parents[3] / "docs" / "scenes.md").read_text()
+    obj, mtl = page.split("| in the .obj file |")[1].split("### ")[0].split("| in the .mtl file |")
+    assert first_column(obj) == model.READ
+    assert first_column(mtl) - {"illum", "ks", "tf"} == materials.READ | materials.INVISIBLE
+
+
+def first_column(table: str) -> set[str]:
+    """The keywords in the first column of a table."""
+    return {name.lower() for row in table.splitlines() for name in re.findall(r"`(\w+)`", row[: row.find("|", 1)])}

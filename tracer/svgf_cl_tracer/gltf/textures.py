@@ -73,7 +73,7 @@ class Textures:
     def pixels(self, texture: dict[str, Any]) -> Image:
         """The image (h, w, 3 or 4) of a textureInfo; `SceneError` where it cannot be read."""
         source = self._source(texture["index"])
-        return self._images.pixels(str(source), self._bytes(source))
+        return self._images.pixels(str(source), lambda: self._bytes(source))
 
     def _source(self, index: Any) -> int:
         """The number of the image that a texture shows."""

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from svgf_cl.errors import shown
 from svgf_cl_tracer.images import Images
 from svgf_cl_tracer.textures import Image
-from svgf_cl_tracer.vectors import Float64
 
 from .folder import found_inside
 from .library import Definition, Map
@@ -77,7 +76,7 @@ class Maps:
             self._masked[key] = _masked(colour, _opacity(mask, channel))
         return self._masked[key], True
 
-    def placed(self, definition: Definition, uv: Float64) -> Float64:
+    def placed(self, definition: Definition, uv: NDArray[np.floating]) -> NDArray[np.floating]:
         """Texture coordinates (..., 2) on a surface where the material scales (-s) and shifts (-o) its images."""
         scale, offset = _placement(definition)
         return uv * scale + offset

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from svgf_cl.errors import shown
 from svgf_cl_tracer.errors import SceneError
 from svgf_cl_tracer.materials import Colour, Material
 from svgf_cl_tracer.textures import Image
-from svgf_cl_tracer.vectors import Float64
 
 from .library import Definition, Statement
 from .losses import Losses
@@ -66,7 +66,7 @@ class Materials:
             name = clean(uncommented(name))
         if name not in self._definitions:
             if name:
-                self._losses.add("materials that no library defines, shown grey", shown(name))
+                self._losses.add("materials that no library defines, shown in a plain colour", shown(name))
             return name, Material(WHITE) if coloured else Material()
         definition = self._definitions[name]
         if name not in self._made:
@@ -76,7 +76,7 @@ class Materials:
                 raise SceneError(f"{definition.library.name}: material {shown(name)}: {error}") from error
         return name, self._made[name]
 
-    def placed(self, name: str, uv: Float64 | None) -> Float64 | None:
+    def placed(self, name: str, uv: NDArray[np.floating] | None) -> NDArray[np.floating] | None:
         """Texture coordinates (..., 2), NaN where there are none, as the material called `name` wants them."""
         material = self._made.get(name)
         if material is None:

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from svgf_cl.errors import shown
 from svgf_cl_tracer.errors import SceneError, SceneWarning
-from svgf_cl_tracer.geometry import Instance, cofactors
-from svgf_cl_tracer.materials import Material
+from svgf_cl_tracer.meshes import instance
 from svgf_cl_tracer.model import Model, Object
+from svgf_cl_tracer.motion import Motion
 from svgf_cl_tracer.vectors import Float64
 
 from .folder import found_inside
 from .library import Definition, read_library
 from .losses import Losses
 from .materials import Materials
-from .surface import Surface, unit
+from .surface import Surface
 from .text import NONE, Indices, Lines, by_keyword, read_text, uncommented
 
 READ = {"v", "vt", "vn", "f", "o", "g", "s", "usemtl", "mtllib"}
@@ -57,23 +58,14 @@ def load_obj(path: Path, to_world: Float64) -> Model:
     materials = Materials(path.parent, _definitions(path, lines.get("mtllib", NONE), losses), losses)
     objects = []
     for name, material_name, chosen in _parts(lines, surface.lines):
-        colours = surface.colours_of(chosen)
-        known, material = materials.of(material_name, coloured=colours is not None)
+        mesh = surface.mesh(chosen)
+        known, material = materials.of(material_name, coloured=mesh.colours is not None)
         if material is not None:
-            uv = materials.placed(known, surface.uv_of(chosen))
-            placed = _placed(surface.positions_of(chosen), surface.normals_of(chosen), uv, material, to_world)
-            objects.append(Object(placed, (path.name, name), known))
+            mesh = replace(mesh, uv=materials.placed(known, mesh.uv))
+            objects.append(Object(instance(mesh, Motion([to_world]), material), (path.name, name), known))
     for loss in losses.lines():
         warnings.warn(f"{path}: {loss}", SceneWarning, stacklevel=2)
     return Model(objects)
-
-
-def _placed(
-    corners: Float64, normals: Float64 | None, uv: Float64 | None, material: Material, to_world: Float64
-) -> Instance:
-    if normals is not None:
-        normals = unit(normals @ cofactors(to_world[:3, :3]).T)
-    return Instance(corners @ to_world[:3, :3].T + to_world[:3, 3], material, normals, uv)
 
 
 def _parts(lines: Mapping[str, Lines], at: Indices) -> Iterator[tuple[str, str, Indices]]:

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from svgf_cl_tracer.geometry import unit
+from svgf_cl_tracer.meshes import Mesh
 from svgf_cl_tracer.textures import srgb_to_linear
 from svgf_cl_tracer.vectors import Float64
 
@@ -81,25 +82,16 @@ class Surface:
         normals = np.concatenate([self.normals, unit(sums)])
         return Surface(self.positions, self.uv, normals, self.colours, corners, self.lines)
 
-    def positions_of(self, chosen: Indices) -> Float64:
-        """The corners (n, 3, 3) of the triangles chosen."""
-        return self.positions[self.corners[chosen, :, 0]]
-
-    def uv_of(self, chosen: Indices) -> Float64 | None:
-        """Texture coordinates (n, 3, 2) of the triangles chosen, NaN at corners without any; None where all are."""
-        return _values(self.uv, self.corners[chosen, :, 1])
-
-    def normals_of(self, chosen: Indices) -> Float64 | None:
-        """Normals (n, 3, 3) of the triangles chosen, their own where a corner has none; None where all have none."""
-        normals = _values(self.normals, self.corners[chosen, :, 2])
-        if normals is None:
-            return None
-        faces = unit(_areas(self.positions_of(chosen)))[:, None]
-        return np.where(np.isnan(normals), faces, normals)
-
-    def colours_of(self, chosen: Indices) -> Float64 | None:
-        """Colours (n, 3, 3) of the triangles chosen; None where the file has none."""
-        return None if self.colours is None else self.colours[self.corners[chosen, :, 0]]
+    def mesh(self, chosen: Indices) -> Mesh:
+        """The triangles chosen, none of which share a corner; texture coordinates are NaN where a corner has none."""
+        position, texture, normal = self.corners[chosen].reshape(-1, 3).T
+        vertices, normals = self.positions[position], _values(self.normals, normal)
+        if normals is not None:  # a triangle without any among others with some is flat
+            flat = unit(_areas(vertices.reshape(-1, 3, 3))).repeat(3, axis=0)
+            normals = np.where(np.isnan(normals), flat, normals)
+        colours = None if self.colours is None else self.colours[position]
+        faces = np.arange(len(vertices)).reshape(-1, 3)
+        return Mesh(vertices, faces, normals, _values(self.uv, texture), colours)
 
 
 def _directions(vectors: Float64) -> tuple[Float64, Indices]:
@@ -111,7 +103,8 @@ def _directions(vectors: Float64) -> tuple[Float64, Indices]:
         length = np.linalg.norm(vectors, axis=1)
         good = np.isfinite(length) & (length > 0.0)
     index = np.where(good, np.arange(len(vectors)), ABSENT)
-    return unit(np.where(good[:, None], vectors, 0.0)), np.append(index, ABSENT)
+    directions: Float64 = unit(np.where(good[:, None], vectors, 0.0)).astype(np.float64)
+    return directions, np.append(index, ABSENT)
 
 
 def _colours(values: Float64) -> Float64 | None:
@@ -126,6 +119,7 @@ def _colours(values: Float64) -> Float64 | None:
 
 
 def _values(values: Float64, index: Indices) -> Float64 | None:
+    """The rows of `values` at each index, NaN where it is absent; None where all are."""
     absent = index == ABSENT
     if absent.all():
         return None
@@ -146,9 +140,3 @@ def _weighted_normals(corners: Float64) -> Float64:
     angles = np.arctan2(np.linalg.norm(normals, axis=2), (after * before).sum(2))
     weighted: Float64 = unit(normals) * angles[..., None]
     return weighted
-
-
-def unit(vectors: NDArray[np.float64]) -> Float64:
-    """`vectors` (..., 3) at length 1; those of length 0 as they are."""
-    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return vectors / np.where(lengths > 0.0, lengths, 1.0)
