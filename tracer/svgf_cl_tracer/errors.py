@@ -7,7 +7,3 @@ from svgf_cl.errors import SvgfError
 
 class SceneError(SvgfError):
     """A scene file or a camera cannot be used; the message is one line that says what to do."""
-
-
-class SceneWarning(UserWarning):
-    """Something in a scene's file is not shown as the file has it; the message is one line."""

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from svgf_cl_tracer.errors import SceneWarning
 from svgf_cl_tracer.geometry import Instance
 from svgf_cl_tracer.materials import Material
 from svgf_cl_tracer.model import Model
@@ -26,7 +25,7 @@ def read(folder: Path, text: str | bytes, library: str | bytes | None = None) ->
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         model = load_obj(path, np.eye(4))
-    assert all(warning.category is SceneWarning for warning in caught)
+    assert all(warning.category is UserWarning for warning in caught)
     lines = [str(warning.message) for warning in caught]
     assert all(line.startswith(f"{path}: ") and "\n" not in line for line in lines)
     return model, [line.removeprefix(f"{path}: ") for line in lines]

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from svgf_cl.errors import shown
-from svgf_cl_tracer.errors import SceneError, SceneWarning
+from svgf_cl_tracer.errors import SceneError
 from svgf_cl_tracer.meshes import instance
 from svgf_cl_tracer.model import Model, Object
 from svgf_cl_tracer.motion import Motion
@@ -64,7 +64,7 @@ def load_obj(path: Path, to_world: Float64) -> Model:
             mesh = replace(mesh, uv=materials.placed(known, mesh.uv))
             objects.append(Object(instance(mesh, Motion([to_world]), material), (path.name, name), known))
     for loss in losses.lines():
-        warnings.warn(f"{path}: {loss}", SceneWarning, stacklevel=2)
+        warnings.warn(f"{path}: {loss}", stacklevel=2)
     return Model(objects)
 
 
