@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-ABSENT = ("svgf_cl_tracer", "numba", "embreex", "trimesh")
+ABSENT = ("svgf_cl_tracer", "numba", "embreex", "mapbox_earcut", "trimesh")
 
 for name in ABSENT:
     sys.modules[name] = None  # type: ignore[assignment]  # so Python marks what cannot be imported

@@ -52,8 +52,9 @@ def load_obj(path: Path, to_world: Float64) -> Model:
         A line makes no sense, or an image cannot be decoded.
     """
     losses, lines = Losses(), by_keyword(read_text(path))
-    for keyword in lines.keys() - READ - INVISIBLE:
-        losses.add("lines that are not read", shown(keyword), len(lines[keyword].texts))
+    for keyword in lines:
+        if keyword not in READ | INVISIBLE:
+            losses.add("lines that are not read", shown(keyword), len(lines[keyword].texts))
     surface = Surface.read(lines, losses)
     materials = Materials(path.parent, _definitions(path, lines.get("mtllib", NONE), losses), losses)
     objects = []
