@@ -27,7 +27,7 @@ from svgf_cl.bench.suite import Suite
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.compare.metrics import require_flip
 from svgf_cl.errors import SvgfError
-from svgf_cl.io.atomic import make_folder
+from svgf_cl.io.atomic import output_folder
 
 RACE_ROUNDS = 20
 VARIANT_ROUNDS = 10  # half as many as by itself: all has to be done in ten minutes
@@ -42,7 +42,7 @@ def everything(
 ) -> None:
     """Measure everything and write one report; a first one, without speed against error, is there earlier."""
     require_flip()
-    folder = make_folder(output)
+    folder = output_folder(output)
     times, race = raced()  # first, for it tells OIDN's memory from what the process grows by
     suite = Suite(re.compile("")).run(progress_bar)
     traced = tracing.measure(TRACED, USUAL_SHAPE, TRACER_ROUNDS, progress_bar)
@@ -50,7 +50,7 @@ def everything(
     sections = [race, picture.section(traced)]
     write(run, folder, sections)
     findings = speed_against_error.found(FOOTAGE, VARIANT_ROUNDS)
-    findings.write(make_folder(folder / "speed-against-error"))
+    findings.write(output_folder(folder / "speed-against-error"))
     sections.append(findings.section)
     write(run, folder, sections)
     shown = [tables.benchmark_table(run, device) for device in run.devices]

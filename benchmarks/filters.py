@@ -48,7 +48,7 @@ from svgf_cl.device import devices
 from svgf_cl.filters import Eaw, Settings
 from svgf_cl.filters.filter import Filter
 from svgf_cl.frame import LUMINANCE
-from svgf_cl.io.atomic import make_folder
+from svgf_cl.io.atomic import output_folder
 from svgf_cl.io.display import Linear, display, to_bytes, write_image
 from svgf_cl.io.panels import still
 from svgf_cl.oracle.taps import shifted, square
@@ -123,7 +123,7 @@ def filters(
     """
     require_flip()
     require_ssim()
-    folder = make_folder(output) if output else None
+    folder = output_folder(output) if output else None
     footages = [
         Footage("area", True, each, shape=parse_size(size), band=(0, 1), frames=frames, spp=spp) for each in scene
     ]

@@ -35,7 +35,7 @@ from svgf_cl.cli.options import parse_size
 from svgf_cl.compare.metrics import require_flip
 from svgf_cl.device import devices
 from svgf_cl.frame import extent
-from svgf_cl.io.atomic import make_folder
+from svgf_cl.io.atomic import output_folder
 from svgf_cl_tracer import Camera
 from svgf_cl_tracer.cli.render import CAMERA_HELP
 from svgf_cl_tracer.cli.scenes import parse_rgb
@@ -71,7 +71,7 @@ def speed_against_error(
     place: dict[str, Any] = {"scene": scene, "cameras": tuple(Camera.parse(text) for text in camera)}
     place["sky"] = parse_rgb(sky) if sky else None
     footages = [replace(footage, shape=shape, spp=spp, **place) for footage in FOOTAGE]
-    folder = make_folder(output)
+    folder = output_folder(output)
     findings = found(footages, rounds)
     findings.write(folder)
     for part in findings.tables:

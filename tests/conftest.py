@@ -32,6 +32,14 @@ def no_references(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         yield
 
 
+@pytest.fixture
+def untold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As if this process had not tried yet what can be kept, nor told of what cannot."""
+    monkeypatch.setattr(cache, "_problems", [])
+    monkeypatch.setattr(cache, "_told", [])
+    cache.is_usable.cache_clear()
+
+
 @pytest.fixture(scope="session")
 def queue() -> cl.CommandQueue:
     """A queue on the default device; choose another with PYOPENCL_CTX."""

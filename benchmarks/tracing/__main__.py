@@ -11,7 +11,7 @@ from benchmarks.command import run as run_command
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import Earlier, Size, parse_size
 from svgf_cl.errors import SvgfError
-from svgf_cl.io.atomic import make_folder
+from svgf_cl.io.atomic import output_folder
 from svgf_cl_tracer.cli.render import SCENE_HELP
 from svgf_cl_tracer.cli.scenes import require_tracer
 
@@ -47,7 +47,7 @@ def tracing(
         raise SvgfError(f"bench needs more ({error}): pip install '.[bench]' in a clone of svgf_cl") from error
     shape = parse_size(size)
     earlier = Run.read(old) if old else None
-    folder = make_folder(output) if output else None
+    folder = output_folder(output) if output else None
     run = Run.now((), suite.measure(scene, shape, rounds, progress_bar), ())
     shown = [*tables.tables(run.results), bars.bar_table(run.results, run.platforms)]
     if earlier:

@@ -19,8 +19,8 @@ import pyopencl as cl
 
 from svgf_cl.compare.rounding import relative_error
 from svgf_cl.denoiser import Denoiser
+from svgf_cl.device.apart import summary
 from svgf_cl.device.layout import Layout
-from svgf_cl.device.probe import summary
 from svgf_cl.device.tuning import VECTOR_WIDTHS, Tuning, default_tuning
 from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Frame, Shape

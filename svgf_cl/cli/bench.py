@@ -12,7 +12,7 @@ from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import Earlier, FilterName, SettingTexts, parse_settings, parse_size
 from svgf_cl.errors import SvgfError
 from svgf_cl.filters import Settings
-from svgf_cl.io.atomic import make_folder
+from svgf_cl.io.atomic import output_folder
 
 
 def bench(
@@ -53,7 +53,7 @@ def bench(
     shapes = [parse_size(text) for text in size] or SHAPES
     suite = Suite(parse_pattern(only), shapes, parse_settings(filter_, set_), seconds)
     earlier = Run.read(old) if old else None
-    folder = make_folder(output) if output else None
+    folder = output_folder(output) if output else None
     run = suite.run(progress_bar)
     shown = [tables.device_table(run), *(tables.benchmark_table(run, device) for device in run.devices)]
     if earlier:

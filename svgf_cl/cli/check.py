@@ -13,7 +13,7 @@ from svgf_cl.cli.options import AllowGaps, Frames
 from svgf_cl.cli.remarks import reading
 from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Frame
-from svgf_cl.io.atomic import make_folder
+from svgf_cl.io.atomic import output_file
 from svgf_cl.io.display import write_image
 from svgf_cl.io.sequence import after_gaps, find_frames
 from svgf_cl.io.shot import read_shot, shared_window
@@ -40,6 +40,8 @@ def check(
     """
     if output and output.suffix != ".png":
         raise SvgfError(f"--output: expected a file named *.png, got {output}")
+    if output:
+        output_file(output)
     sources = find_frames(frames, allow_gaps=allow_gaps)
     inspection, cuts = Inspection(), after_gaps(sources)
     last: list[Frame] = []
@@ -71,5 +73,4 @@ def draw(path: Path, last: list[Frame]) -> None:
         from svgf_cl.check.sheet import sheet
     except ImportError as error:
         raise SvgfError(f"--output: drawing takes Pillow; pip install pillow ({error})") from error
-    make_folder(path.parent)
     write_image(path, sheet(last[0], last[-1]))

@@ -18,7 +18,7 @@ from svgf_cl.denoiser import Denoiser
 from svgf_cl.errors import FileError
 from svgf_cl.filters import Settings
 from svgf_cl.filters.filter import Filter
-from svgf_cl.io.atomic import make_folder
+from svgf_cl.io.atomic import output_folder
 from svgf_cl.io.display import to_bytes, write_image
 from svgf_cl.io.exr import write_image as write_exr
 from svgf_cl.io.image import Image
@@ -58,7 +58,7 @@ def denoise(
     """
     settings = parse_settings(filter_, set_)
     sources = find_frames(frames, allow_gaps=allow_gaps)
-    targets = target_paths(sources, make_folder(output))
+    targets = target_paths(sources, output_folder(output))
     shown = [target.with_suffix(".png") for target in targets if png]
     check_leftovers(output, [*targets, *shown])
     profiles, kept = [], 0

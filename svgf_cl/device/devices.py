@@ -13,11 +13,13 @@ from dataclasses import dataclass, field, replace
 
 import pyopencl as cl
 
-from svgf_cl.device import intel_runtime, probe
+from svgf_cl.device import apart, driver_caches, intel_runtime, probe
 from svgf_cl.device.process import check_process
 from svgf_cl.errors import DeviceError
+from svgf_cl.io import cache
 
 # Here, as `import svgf_cl` comes by: a loader looks once, when anyone in this process first lists the platforms.
+driver_caches.do_without()
 intel_runtime.register()
 
 # By pyopencl's own name, so that it means the same in every program.
@@ -192,13 +194,14 @@ def _context(device: cl.Device) -> cl.Context:
 
 
 def _survey(*, refresh: bool = False) -> list[DeviceReport]:
+    cache.tell()
     reports = []
     platforms = _platforms()
     for index, platform in enumerate(platforms):
         try:
             devices = platform.get_devices()
         except cl.Error as error:
-            reports.append(_unlisted(str(index), platform.name, platform.version, probe.summary(str(error))))
+            reports.append(_unlisted(str(index), platform.name, platform.version, apart.summary(str(error))))
             continue
         reports += [_report(f"{index}:{number}", device, refresh) for number, device in enumerate(devices)]
     if reason := intel_runtime.why_unlisted({platform.name for platform in platforms}):

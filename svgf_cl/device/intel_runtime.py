@@ -20,7 +20,7 @@ from pathlib import Path
 
 from svgf_cl.errors import SvgfError
 from svgf_cl.io.atomic import written_whole
-from svgf_cl.io.cache import cache_folder
+from svgf_cl.io.cache import cache_folder, is_usable, temporary_folder
 
 PLATFORM = "Intel(R) OpenCL"
 LIBRARY = "libintelocl.so"
@@ -49,7 +49,7 @@ def register() -> None:
     first listing of platforms in this process, because loaders read the variable once.
     """
     library = find()
-    if library is None or VARIABLE in os.environ or _system_has_it():
+    if library is None or not _is_free(library) or _system_has_it():
         return
     try:
         vendors = _vendors_folder(library)
@@ -76,9 +76,14 @@ def why_unlisted(platforms: Container[str]) -> str:
     if library is None or PLATFORM in platforms:
         return ""
     vendors = os.environ.get(VARIABLE)
-    if vendors and Path(vendors).parent == cache_folder():
+    if vendors and Path(vendors).name == _folder_name(library):
         return "the platforms were listed before svgf_cl was imported; import svgf_cl first"
     return f"{library} is installed, but the OpenCL loader is not pointed at it ({VARIABLE}={vendors or ''!r})"
+
+
+def _is_free(library: Path) -> bool:
+    """Whether nobody has set the variable, but for a process that this one descends from, whose folder may be gone."""
+    return VARIABLE not in os.environ or Path(os.environ[VARIABLE]).name == _folder_name(library)
 
 
 def _system_has_it() -> bool:
@@ -92,9 +97,14 @@ def _content(icd: Path) -> str:
         return ""  # a dangling link, or not for this user: it registers nothing here
 
 
-def _vendors_folder(library: Path) -> Path:
+def _folder_name(library: Path) -> str:
     # One directory per environment, so that two environments do not rewrite each other's.
-    vendors = cache_folder() / f"icd-{hashlib.sha256(bytes(library)).hexdigest()[:12]}"
+    return f"icd-{hashlib.sha256(bytes(library)).hexdigest()[:12]}"
+
+
+def _vendors_folder(library: Path) -> Path:
+    place = cache_folder() if is_usable(cache_folder()) else temporary_folder()
+    vendors = place / _folder_name(library)
     vendors.mkdir(parents=True, exist_ok=True)
     system = {icd.name for icd in SYSTEM_VENDORS.glob("*.icd")}
     for link in vendors.glob("*.icd"):

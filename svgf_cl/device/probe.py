@@ -10,27 +10,20 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import signal
-import subprocess
 import sys
-import warnings
 from collections.abc import Iterator
 
 import numpy as np
 import pyopencl as cl
 
+from svgf_cl.device import apart
 from svgf_cl.device.programs import OPTIONS
-from svgf_cl.errors import SvgfError
 from svgf_cl.io.atomic import read_json, written_whole
-from svgf_cl.io.cache import cache_folder, device_key
+from svgf_cl.io.cache import cache_folder, device_key, keeping
 
 # Part of the key under which answers are remembered: raise it whenever the probe asks for more.
 VERSION = 1
 STORE = "probes.json"
-TIMEOUT_SECONDS = 60
-
-# Starts the line that holds the answer, as drivers print on their own account, at exit too.
-ANSWER = "svgf_cl.device.probe answers "
 
 KERNEL = """
 kernel void probe(global const float4 *in, global float4 *out, const float scale)
@@ -41,11 +34,7 @@ kernel void probe(global const float4 *in, global float4 *out, const float scale
 """
 
 
-_unanswered: dict[str, str] = {}
-
-
-class NoAnswerError(Exception):
-    """The probe came to no end; the message says how."""
+_heard: dict[str, str] = {}  # by this process: an answer that cannot be kept counts, and so does none
 
 
 def reason(device: cl.Device, *, refresh: bool = False) -> str:
@@ -63,7 +52,7 @@ def reason(device: cl.Device, *, refresh: bool = False) -> str:
     str
     """
     name = key(device)
-    known = (_recall() | _unanswered).get(name)
+    known = (_recall() | _heard).get(name)
     if known is None or (refresh and known):
         return _ask(name)
     return known
@@ -105,62 +94,31 @@ def run(device: cl.Device) -> str:
         program.probe(queue, (numbers.size // 4,), None, source, target, np.float32(3))
         cl.enqueue_copy(queue, result, target)
     except cl.Error as error:
-        return summary(str(error))
+        return apart.summary(str(error))
     if not np.allclose(result, 3 * numbers + np.sqrt(numbers), rtol=1e-6):
         return "computes wrong numbers"
     return ""
 
 
-def summary(log: str) -> str:
-    """Return the line of a driver's message that says most: the first that names an error, else the last.
-
-    Parameters
-    ----------
-    log : str
-        May be empty.
-
-    Returns
-    -------
-    str
-    """
-    lines = [line.strip() for line in log.splitlines() if line.strip()]
-    errors = (line for line in lines if "error" in line.lower())
-    return next(errors, lines[-1] if lines else "the driver gives no reason")
-
-
 def _ask(name: str) -> str:
     try:
-        answer = _run_apart(name)
-    except NoAnswerError as failure:
-        _unanswered[name] = str(failure)
-        return str(failure)
-    _unanswered.pop(name, None)
-    _remember(_recall() | {name: answer})
-    return answer
+        _heard[name] = _run_apart(name)
+    except apart.NoAnswerError as failure:
+        _heard[name] = str(failure)
+    else:
+        _remember(_recall() | {name: _heard[name]})
+    return _heard[name]
 
 
 def _run_apart(wanted: str) -> str:
     environment = os.environ | {
         # The modules of this process, and none that happen to lie in the current folder.
-        "PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path),
+        "PYTHONPATH": os.pathsep.join(path or os.curdir for path in sys.path),
         "PYTHONSAFEPATH": "1",
         # No answer from pyopencl's binary cache: the compiler is what is on trial.
         "PYOPENCL_NO_CACHE": "1",
     }
-    command = [sys.executable, "-W", "ignore", "-m", "svgf_cl.device.probe", wanted]
-    try:
-        child = subprocess.run(
-            command, env=environment, capture_output=True, text=True, errors="replace", timeout=TIMEOUT_SECONDS
-        )
-    except subprocess.TimeoutExpired as hang:
-        raise NoAnswerError(f"the driver hangs: no answer within {TIMEOUT_SECONDS} s") from hang
-    if child.returncode < 0:
-        crash = signal.Signals(-child.returncode).name
-        raise NoAnswerError(f"the driver crashes ({crash}): {summary(child.stderr)}")
-    answers = [line.removeprefix(ANSWER) for line in child.stdout.splitlines() if line.startswith(ANSWER)]
-    if child.returncode or not answers:
-        raise NoAnswerError(f"the probe fails: {summary(child.stderr)}")
-    return str(json.loads(answers[-1]))
+    return apart.ask([sys.executable, "-W", "ignore", "-m", "svgf_cl.device.probe", wanted], environment)
 
 
 def _listed() -> Iterator[cl.Device]:
@@ -179,19 +137,15 @@ def _recall() -> dict[str, str]:
 
 
 def _remember(answers: dict[str, str]) -> None:
-    try:
-        cache_folder().mkdir(parents=True, exist_ok=True)
-        with written_whole(cache_folder() / STORE) as aside:
-            aside.write_text(json.dumps(answers, indent=1), encoding="utf-8")
-    except (OSError, SvgfError) as error:
-        warnings.warn(f"svgf_cl will probe its devices in every run: {error}", stacklevel=3)
+    with keeping(), written_whole(cache_folder() / STORE) as aside:
+        aside.write_text(json.dumps(answers, indent=1), encoding="utf-8")
 
 
 def _main(wanted: str) -> None:
     device = next((device for device in _listed() if key(device) == wanted), None)
     if device is None:
         sys.exit("the loader does not list the device in a process of its own")
-    print(f"\n{ANSWER}{json.dumps(run(device))}", flush=True)
+    print(f"\n{apart.answer(run(device))}", flush=True)
 
 
 if __name__ == "__main__":

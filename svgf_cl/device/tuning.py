@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import json
+import os
 import warnings
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -15,7 +16,7 @@ import pyopencl as cl
 from svgf_cl.device import programs
 from svgf_cl.device.layout import PAGE, ROW_ALIGNMENT, WIDEST_VECTOR
 from svgf_cl.errors import DeviceError, SvgfError, shown
-from svgf_cl.io.atomic import make_folder, read_json, written_whole
+from svgf_cl.io.atomic import read_json, written_whole
 from svgf_cl.io.cache import cache_folder, device_key
 
 STORE = "tunings.json"
@@ -147,10 +148,9 @@ def store_path() -> Path:
 
 def read_store() -> dict[str, Any]:
     """Every stored tuning by `device_key`; `OSError` or `ValueError` where the file is unreadable or damaged."""
-    try:
-        entries = read_json(store_path())
-    except FileNotFoundError:
+    if not os.path.exists(store_path()):  # False, not an error, where its folder is out of bounds
         return {}
+    entries = read_json(store_path())
     if not isinstance(entries, dict):
         raise ValueError(f"expected an object, got {type(entries).__name__}")
     return entries
@@ -166,7 +166,6 @@ def known_tunings() -> dict[str, Any]:
 
 def write_store(entries: dict[str, Any]) -> Path:
     """Write the file of tunings, whole or not at all."""
-    make_folder(cache_folder())
     with written_whole(store_path()) as aside:
         aside.write_text(json.dumps(entries, indent=1), encoding="utf-8")
     return store_path()

@@ -7,7 +7,7 @@ import json
 import os
 import re
 import socket
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -19,8 +19,9 @@ from svgf_cl.errors import FileError
 def written_whole(path: Path) -> Iterator[Path]:
     """Yield an empty file beside `path` to write to; it becomes `path` when the block ends, and is gone if it raises.
 
+    Folders that `path` lies in are made where they are missing, and are gone too if it raises.
     A process that is killed leaves its file under a name that nothing reads, ``.NAME.HOST-PROCESS.tmp``, and what was
-    at `path` before; `make_folder` deletes it.
+    at `path` before; `output_folder` deletes it.
 
     Raises
     ------
@@ -28,33 +29,49 @@ def written_whole(path: Path) -> Iterator[Path]:
         Where the file cannot be written; it names `path` and the system's reason.
     """
     aside = path.with_name(f".{path.name}.{socket.gethostname()}-{os.getpid()}.tmp")
+    made: list[Path] = []
     try:
+        made = _make(path.parent)
         aside.touch()
         yield aside
         _sync(aside)
         os.replace(aside, path)
-    except OSError as error:
-        raise FileError(f"{path}: cannot be written ({error.strerror or error})") from error
-    finally:
-        with contextlib.suppress(OSError):  # there never was one, or it is `path` now
+    except BaseException as error:
+        with contextlib.suppress(OSError):  # there never was one
             aside.unlink()
+        _remove(made)
+        if isinstance(error, OSError):
+            raise FileError(f"{path}: cannot be written ({error.strerror or error})") from error
+        raise
 
 
-def make_folder(path: Path) -> Path:
-    """Make the folder `path`, parents too, where it is not there yet, and clear it of what killed processes left.
+def output_folder(path: Path) -> Path:
+    """Return the folder `path` for files that are still to be made, cleared of what killed processes left there.
+
+    It is made with the first file, so that a run that fails before leaves no empty folder; that it can be made is found
+    out here, before any work is done.
 
     Raises
     ------
     FileError
-        Where that is impossible, or the folder is read-only.
+        Where it cannot be made, or is read-only.
     """
     try:
-        path.mkdir(parents=True, exist_ok=True)
+        _remove(_make(path))
     except OSError as error:
         raise FileError(f"{path}: cannot be made a folder for the output ({error.strerror})") from error
-    if not os.access(path, os.W_OK | os.X_OK):
-        raise FileError(f"{path}: expected a folder that can be written to, got one that is read-only")
-    _delete_leftovers(path)
+    if path.is_dir():
+        if not os.access(path, os.W_OK | os.X_OK):
+            raise FileError(f"{path}: expected a folder that can be written to, got one that is read-only")
+        _delete_leftovers(path)
+    return path
+
+
+def output_file(path: Path) -> Path:
+    """Return `path` for a file that is still to be made; errors as of `output_folder`, before any work is done."""
+    output_folder(path.parent)
+    if path.is_dir():
+        raise FileError(f"{path}: expected a file to write, got a folder")
     return path
 
 
@@ -95,6 +112,24 @@ def read_json(path: Path) -> Any:
         return json.loads(path.read_bytes())
     except RecursionError as error:
         raise ValueError("nested too deeply") from error
+
+
+def _make(folder: Path) -> list[Path]:
+    """Make a folder and those that it lies in, as far as they are missing; return what was made, innermost first."""
+    missing = [place for place in (folder, *folder.parents) if not os.path.lexists(place)]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        _remove(missing)
+        raise
+    return missing
+
+
+def _remove(folders: Sequence[Path]) -> None:
+    """Remove folders, each before the one that it lies in, as far as they are there and empty."""
+    for folder in folders:
+        with contextlib.suppress(OSError):
+            folder.rmdir()
 
 
 def _sync(path: Path) -> None:

@@ -15,7 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from svgf_cl.io.atomic import make_folder, written_whole
+from svgf_cl.io.atomic import output_folder, written_whole
+from svgf_cl.io.cache import keeping
 
 from .estimate import Estimate, Step
 from .vectors import Float32
@@ -62,12 +63,13 @@ class Checkpoints:
         return start
 
     def replace(self, old: Estimate, new: Estimate) -> None:
-        """Write `new`, whole or not at all, and delete `old`, which it was made from."""
-        make_folder(self.folder)
+        """Write `new`, whole or not at all, and delete `old`, which it was made from; where that fails, `old` stays."""
         history = np.array(new.history, np.float64).reshape(-1, 2)
-        with written_whole(self._path(new)) as aside, aside.open("wb") as file:
-            np.savez(file, light=new.light, squares=new.squares, history=history)
-        self._path(old).unlink(missing_ok=True)
+        with keeping():
+            output_folder(self.folder)
+            with written_whole(self._path(new)) as aside, aside.open("wb") as file:
+                np.savez(file, light=new.light, squares=new.squares, history=history)
+            self._path(old).unlink(missing_ok=True)
 
     def _path(self, estimate: Estimate) -> Path:
         return self.folder / f"{self.number:04d}.{estimate.spp:06d}.npz"

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import numba
 
-from svgf_cl.io.cache import cache_folder
+from svgf_cl.io.cache import cache_folder, is_usable, tell
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -25,9 +25,12 @@ def _digest() -> str:
 FOLDER = cache_folder() / "compiled" / _digest()
 
 
+IS_KEPT = is_usable(cache_folder())
+tell()
+
 OPTIONS: dict[str, Any] = {
     "nogil": True,
-    "cache": True,
+    "cache": IS_KEPT,
     "error_model": "numpy",
     "forceinline": True,
     "_nrt": False,

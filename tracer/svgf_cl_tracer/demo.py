@@ -25,7 +25,7 @@ from svgf_cl.compare.metrics import Metrics, measure
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.filters import Settings
 from svgf_cl.frame import Frame, Shape
-from svgf_cl.io.atomic import make_folder
+from svgf_cl.io.atomic import output_folder
 from svgf_cl.io.display import Bytes, to_bytes, write_image
 from svgf_cl.io.frames import frame_path, kept_frame, write_frame
 from svgf_cl.io.panels import still, write_preview
@@ -81,16 +81,17 @@ class Demo:
         return self.folder / f"still.{number:04d}.png"
 
     def check_leftovers(self) -> None:
-        """Raise `FileError` where the folder holds frames of an earlier run that this one would not replace."""
-        for kind in ("noisy", "filtered", "denoised"):
-            check_leftovers(self.folder / kind, [self.path(kind, number) for number in range(self.frames)])
-        check_leftovers(self.folder / "reference", [self.path("reference", number) for number in self.compared])
-        check_leftovers(self.folder, [self.still_path(number) for number in self.compared])
+        """Raise `FileError` where a folder cannot be written to, or holds frames that this run would not replace."""
+        written = {
+            **{kind: [self.path(kind, n) for n in range(self.frames)] for kind in ("noisy", "filtered", "denoised")},
+            "reference": [self.path("reference", n) for n in self.compared],
+            ".": [self.still_path(n) for n in self.compared],
+        }
+        for kind, paths in written.items():
+            check_leftovers(output_folder(self.folder / kind), paths)
 
     def denoise(self, denoiser: Denoiser) -> Iterator[dict[str, float]]:
         """Render, denoise and write one frame after the other; yield the milliseconds of each pass."""
-        for kind in ("noisy", "filtered", "denoised"):
-            make_folder(self.folder / kind)
         for number in range(self.frames):
             pictures = {"denoised": denoiser.denoise(self._noisy(number)), "filtered": denoiser.stage("modulated")}
             for kind, picture in pictures.items():
@@ -109,7 +110,6 @@ class Demo:
 
     def render_references(self, advance: Callable[[], None]) -> None:
         """Render the references of the compared frames; `advance` is called `chunks` times for each of them."""
-        make_folder(self.folder / "reference")
         references = svgf_cl_tracer.References(self.shot)
         for number in self.compared:
             estimate = references.render(number, self.reference_spp, advance)

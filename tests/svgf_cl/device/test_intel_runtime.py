@@ -9,6 +9,7 @@ import sys
 import pytest
 
 from svgf_cl.device import intel_runtime
+from svgf_cl.io import cache
 
 
 @pytest.fixture
@@ -91,11 +92,34 @@ def test_nothing_happens_where_it_is_not_installed(system, monkeypatch):
     assert intel_runtime.why_unlisted({"A"}) == ""
 
 
-def test_a_cache_that_cannot_be_written_is_not_silent(system, tmp_path):
+def test_a_cache_that_cannot_be_written_is_done_without(system, tmp_path, monkeypatch, untold):
     (tmp_path / "cache").write_text("a file where the folder should be")
-    with pytest.warns(UserWarning, match="stays unlisted"):
+    (tmp_path / "instead").mkdir()
+    monkeypatch.setattr(intel_runtime, "temporary_folder", lambda: tmp_path / "instead")
+    intel_runtime.register()
+    assert os.environ[intel_runtime.VARIABLE].startswith(str(tmp_path / "instead"))
+    assert set(registered()) == {"pocl.icd", "svgf_cl-intel.icd"}
+    with pytest.warns(UserWarning, match="cache: cannot be written"):
+        cache.tell()
+
+
+def test_where_there_is_no_temporary_folder_either_it_is_not_silent(system, tmp_path, monkeypatch, untold):
+    def none():
+        raise FileNotFoundError("No usable temporary directory found")
+
+    (tmp_path / "cache").write_text("a file where the folder should be")
+    monkeypatch.setattr(intel_runtime, "temporary_folder", none)
+    with pytest.warns(UserWarning, match="stays unlisted: No usable temporary directory"):
         intel_runtime.register()
     assert intel_runtime.VARIABLE not in os.environ
+
+
+def test_the_folder_of_a_process_that_has_ended_is_made_anew(system, monkeypatch, tmp_path):
+    intel_runtime.register()
+    name = os.path.basename(os.environ[intel_runtime.VARIABLE].rstrip("/"))
+    monkeypatch.setenv(intel_runtime.VARIABLE, f"{tmp_path / 'gone' / name}/")
+    intel_runtime.register()
+    assert set(registered()) == {"pocl.icd", "svgf_cl-intel.icd"}
 
 
 def test_listed_too_early(system):

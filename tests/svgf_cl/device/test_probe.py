@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from svgf_cl.device import probe
+from svgf_cl.device import apart, probe
 
 KEY = "some device"
 
@@ -25,18 +25,18 @@ def memory(monkeypatch, tmp_path):
     """An empty cache folder."""
     folder = tmp_path / "cache"
     monkeypatch.setattr(probe, "cache_folder", lambda: folder)
-    monkeypatch.setattr(probe, "_unanswered", {})
+    monkeypatch.setattr(probe, "_heard", {})
     return folder
 
 
 @pytest.fixture
 def answers(monkeypatch):
     """The answers that the next probes give, first first; probing more often fails."""
-    given: list[str | probe.NoAnswerError] = []
+    given: list[str | apart.NoAnswerError] = []
 
     def give(key: str) -> str:
         answer = given.pop(0)
-        if isinstance(answer, probe.NoAnswerError):
+        if isinstance(answer, apart.NoAnswerError):
             raise answer
         return answer
 
@@ -76,6 +76,12 @@ def test_broken_compiler(queue, monkeypatch):
     assert "\n" not in reason
 
 
+def test_an_interpreter_that_cannot_be_started_gives_no_answer(monkeypatch, tmp_path):
+    monkeypatch.setattr(sys, "executable", str(tmp_path))
+    with pytest.raises(apart.NoAnswerError, match=r"the probe cannot be started: .*Permission denied"):
+        probe._run_apart(KEY)
+
+
 @pytest.mark.parametrize(
     ("script", "reason"),
     [
@@ -89,20 +95,20 @@ def test_broken_compiler(queue, monkeypatch):
 )
 def test_a_driver_that_misbehaves_gives_no_answer(interpreter, monkeypatch, script, reason):
     if "sleep" in script:
-        monkeypatch.setattr(probe, "TIMEOUT_SECONDS", 0.5)
+        monkeypatch.setattr(apart, "TIMEOUT_SECONDS", 0.5)
     interpreter(script)
-    with pytest.raises(probe.NoAnswerError) as error:
+    with pytest.raises(apart.NoAnswerError) as error:
         probe._run_apart(KEY)
     assert str(error.value) == reason
 
 
 def test_a_driver_that_prints_before_and_after_the_answer(interpreter):
-    interpreter(f"""echo hello from the driver; echo '{probe.ANSWER}"says no"'; echo bye""")
+    interpreter(f"""echo hello from the driver; echo '{apart.answer("says no")}'; echo bye""")
     assert probe._run_apart(KEY) == "says no"
 
 
 def test_a_device_that_only_this_process_lists(queue):
-    with pytest.raises(probe.NoAnswerError, match="does not list"):
+    with pytest.raises(apart.NoAnswerError, match="does not list"):
         probe._run_apart("no such device")
 
 
@@ -112,14 +118,14 @@ def test_answers_are_remembered(memory, answers):
 
 
 def test_no_answer_is_remembered_only_by_this_process(memory, answers, monkeypatch):
-    answers += [probe.NoAnswerError("hangs"), "", "never asked"]
+    answers += [apart.NoAnswerError("hangs"), "", "never asked"]
     assert probe.reason(None) == probe.reason(None) == "hangs"
-    monkeypatch.setattr(probe, "_unanswered", {})  # another process
+    monkeypatch.setattr(probe, "_heard", {})  # another process
     assert probe.reason(None) == probe.reason(None) == ""
 
 
 def test_refresh_doubts_no_answer_too(memory, answers):
-    answers += [probe.NoAnswerError("hangs"), "", "never asked"]
+    answers += [apart.NoAnswerError("hangs"), "", "never asked"]
     assert probe.reason(None) == "hangs"
     assert probe.reason(None, refresh=True) == probe.reason(None) == ""
 
@@ -152,11 +158,12 @@ def test_a_damaged_memory_is_written_anew(memory, answers, damaged):
     assert probe.reason(None) == probe.reason(None) == ""
 
 
-def test_a_memory_that_cannot_be_written_is_not_silent(memory, answers):
+def test_a_memory_that_cannot_be_written_is_not_silent_and_asks_once_a_process(memory, answers, untold):
     memory.write_text("a file where the folder should be")
-    answers.append("")
-    with pytest.warns(UserWarning, match="in every run"):
+    answers += ["", "never asked"]
+    with pytest.warns(UserWarning, match=r"cache/probes.json: cannot be written .* each run asks devices"):
         assert probe.reason(None) == ""
+    assert probe.reason(None) == ""
 
 
 @pytest.mark.parametrize(
@@ -169,4 +176,4 @@ def test_a_memory_that_cannot_be_written_is_not_silent(memory, answers):
     ],
 )
 def test_summary(log, line):
-    assert probe.summary(log) == line
+    assert apart.summary(log) == line

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from svgf_cl import FileError
-from svgf_cl.io.atomic import make_folder, read_json, written_whole
+from svgf_cl.io.atomic import output_file, output_folder, read_json, written_whole
 from svgf_cl.io.display import write_image
 from svgf_cl.io.panels import write_preview
 from tests.disk import files_up_to
@@ -54,9 +54,10 @@ def test_an_error_of_the_system_names_the_file(tmp_path: Path) -> None:
 
 
 def test_an_error_of_the_system_comes_before_any_work(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
     with (
-        pytest.raises(FileError, match=r"a\.txt: cannot be written \(No such file"),
-        written_whole(tmp_path / "nowhere" / "a.txt"),
+        pytest.raises(FileError, match=r"a\.txt: cannot be written \(File exists"),
+        written_whole(tmp_path / "file" / "a.txt"),
     ):
         pytest.fail("there is nothing to write to")
 
@@ -97,7 +98,7 @@ def test_what_a_killed_process_left_is_cleared_away_and_what_others_write_is_not
     kept = [tmp_path / name for name in others]
     for path in (gone, *kept):
         path.touch()
-    make_folder(tmp_path)
+    output_folder(tmp_path)
     assert sorted(tmp_path.iterdir()) == sorted(kept)
 
 
@@ -111,20 +112,45 @@ def test_json_that_nobody_meant_is_no_more_than_wrong(tmp_path: Path) -> None:
     assert read_json(path) == [1, 2]
 
 
-def test_folders_are_made_with_their_parents(tmp_path: Path) -> None:
-    folder = tmp_path / "a" / "b"
-    assert make_folder(folder) == folder
-    assert make_folder(folder).is_dir()
+def test_folders_are_made_with_the_first_file_and_gone_if_it_fails(tmp_path: Path) -> None:
+    path = output_folder(tmp_path / "a" / "b") / "c.txt"
+    assert not list(tmp_path.iterdir()), "a run that fails now leaves nothing"
+    with pytest.raises(ZeroDivisionError), written_whole(path) as aside:
+        aside.write_text(f"{1 / 0}")
+    assert not list(tmp_path.iterdir())
+    with written_whole(path) as aside:
+        aside.write_text("whole")
+    assert path.read_text() == "whole"
+    with pytest.raises(ZeroDivisionError), written_whole(path.parent / "d" / "e.txt") as aside:
+        aside.write_text(f"{1 / 0}")
+    assert [place for place in sorted(tmp_path.rglob("*")) if place.is_file()] == [path]
+    assert not (path.parent / "d").exists()
 
 
-def test_what_cannot_be_a_folder_is_refused(tmp_path: Path) -> None:
+def test_a_folder_that_another_process_uses_meanwhile_stays(tmp_path: Path) -> None:
+    other = tmp_path / "a" / "another's.txt"
+    with pytest.raises(ZeroDivisionError), written_whole(tmp_path / "a" / "b.txt"):
+        other.write_text(f"{other.touch()} {1 / 0}")
+    assert other.exists()
+
+
+def test_what_cannot_be_a_folder_is_refused_and_nothing_is_left(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
-    for path in (tmp_path / "file", tmp_path / "file" / "below"):
-        with pytest.raises(FileError, match="cannot be made a folder"):
-            make_folder(path)
+    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
+    for path in ("file", "file/below", "link", "a/b/" + "x" * 300):
+        for whole in (tmp_path / path, Path(os.path.relpath(tmp_path / path))):
+            with pytest.raises(FileError, match="cannot be made a folder"):
+                output_folder(whole)
+    assert sorted(place.name for place in tmp_path.iterdir()) == ["file", "link"]
 
 
 def test_a_folder_that_is_read_only_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "access", lambda *_: False)  # root may write anywhere
     with pytest.raises(FileError, match="read-only"):
-        make_folder(tmp_path)
+        output_folder(tmp_path)
+
+
+def test_a_file_that_is_a_folder_is_refused(tmp_path: Path) -> None:
+    assert output_file(tmp_path / "a" / "b.png") == tmp_path / "a" / "b.png"
+    with pytest.raises(FileError, match="expected a file to write, got a folder"):
+        output_file(tmp_path)

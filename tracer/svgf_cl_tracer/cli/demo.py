@@ -13,7 +13,6 @@ from svgf_cl.cli.options import MAX_FRAMES, Output, Size, parse_size
 from svgf_cl.compare.metrics import SSIM_WINDOW, Metrics, require_ssim
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.errors import SvgfError
-from svgf_cl.io.atomic import make_folder
 from svgf_cl_tracer.cli.scenes import require_tracer
 
 
@@ -44,7 +43,7 @@ def demo(
     shape = parse_size(size)
     if min(shape) < SSIM_WINDOW:
         raise SvgfError(f"--size: expected at least {SSIM_WINDOW}x{SSIM_WINDOW} pixels, which SSIM needs, got {size}")
-    run = Demo(make_folder(output), frames, shape, reference_spp)
+    run = Demo(output, frames, shape, reference_spp)
     run.check_leftovers()
     denoiser = Denoiser(run.shape, settings=SETTINGS)
     print(f"device: {denoiser.queue.device.name.strip()} ({denoiser.queue.device.platform.name})")

@@ -21,7 +21,7 @@ from svgf_cl.cli.console import WIDE, tracked
 from svgf_cl.cli.options import Exposure, Size, parse_size
 from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Shape
-from svgf_cl.io.atomic import make_folder
+from svgf_cl.io.atomic import output_file
 from svgf_cl.io.display import Bytes, automatic_exposure, to_bytes, write_image
 from svgf_cl_tracer.cli.scenes import open_scene, read_sky, require_tracer
 
@@ -73,7 +73,7 @@ def scenes(
         return
     if output.suffix not in FORMATS:
         raise SvgfError(f"--output: expected a file named *{' or *'.join(FORMATS)}, got {output}")
-    make_folder(output.parent)
+    output_file(output)
     rendered = tracked(entries, len(entries), "rendering")
     write_image(output, contact_sheet({entry.caption: draw(entry, shape) for entry in rendered}))
     print(f"{len(entries)} scenes in {output}")

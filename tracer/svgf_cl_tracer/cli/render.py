@@ -11,7 +11,7 @@ import typer
 
 from svgf_cl.cli.console import kept_of, share_bar, tracked
 from svgf_cl.cli.options import MAX_FRAMES, Output, Size, parse_size
-from svgf_cl.io.atomic import make_folder
+from svgf_cl.io.atomic import output_folder
 from svgf_cl.io.frames import frame_path, kept_frame, write_frame
 from svgf_cl.io.sequence import check_leftovers
 from svgf_cl_tracer.cli.scenes import open_scene, read_sky, require_tracer
@@ -92,7 +92,7 @@ def render(
     goal = None
     if reference_spp or until_error is not None:
         goal = Goal(reference_spp or Goal.spp, inf if until_error is None else until_error)
-    folder, written = make_folder(output), ("frame", "reference") if goal else ("frame",)
+    folder, written = output_folder(output), ("frame", "reference") if goal else ("frame",)
     check_leftovers(folder, [frame_path(folder, n, stem) for stem in written for n in range(frames)])
     settings: dict[str, Any] = {"spp": spp, "seed": seed, "jitter": jitter, "bounces": bounces}
     made_from = {number: frame_identity(shot, number, **settings) for number in range(frames)}

@@ -24,10 +24,10 @@ def require_tracer() -> None:
         ) from error
     finally:
         signal.signal(signal.SIGINT, interrupt)
-    from svgf_cl_tracer.compiled import was_compiled
+    from svgf_cl_tracer.compiled import IS_KEPT, was_compiled
 
     if not was_compiled():
-        print("compiling the tracer: some twenty seconds, this once", flush=True)
+        print(f"compiling the tracer: some twenty seconds{', this once' if IS_KEPT else ''}", flush=True)
 
 
 def read_sky(text: str) -> tuple[float, float, float] | Environment:
