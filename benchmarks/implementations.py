@@ -11,7 +11,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from svgf_cl.device import devices, intel_runtime
+from svgf_cl.device import devices, icd_files, intel_runtime
 
 # By the name in tables: the platform's own name, what the OpenCL loader is to load, what else the driver asks for.
 # Oclgrind's package registers it nowhere; `scripts/set_up implementations` installs them all.
@@ -52,7 +52,7 @@ def _alone(name: str, folder: Path) -> Environment:
     vendors.mkdir()
     (vendors / "only.icd").write_text(f"{library}\n")
     # With the slash: without it some loaders take the value for a library.
-    return {**os.environ, **needs, intel_runtime.VARIABLE: f"{vendors}/", devices.VARIABLE: platform}
+    return {**os.environ, **needs, icd_files.VARIABLE: f"{vendors}/", devices.VARIABLE: platform}
 
 
 def main() -> None:

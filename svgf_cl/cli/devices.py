@@ -42,7 +42,9 @@ def _show(reports: Sequence[DeviceReport]) -> None:
 def _description(report: DeviceReport) -> str:
     # "OpenCL 3.0 <what the vendor likes to add>": the driver's version says the rest in fewer words.
     version = " ".join(report.version.split()[:2])
-    lines = (report.device, f"{report.platform}, {version}, driver {report.driver}", report.reason, _tuning(report))
+    driver = f"driver {report.driver}" if report.handle else ""
+    implementation = ", ".join(part for part in (report.platform, version, driver) if part)
+    lines = (report.device, implementation, report.reason, _tuning(report))
     return "\n".join(line for line in lines if line)
 
 

@@ -10,8 +10,9 @@ from svgf_cl.bench.tuner import STEPS, Trial, Tuner
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import Size, parse_size
 from svgf_cl.device.devices import default_queue
-from svgf_cl.device.tuning import default_tuning, forget_tuning, store_tuning
+from svgf_cl.device.tuning import default_tuning, forget_tuning, store_path, store_tuning
 from svgf_cl.frame import Shape
+from svgf_cl.io.atomic import output_file
 
 
 def tune(
@@ -31,6 +32,7 @@ def tune(
       svgf-cl tune --reset
     """
     shape = parse_size(size)
+    output_file(store_path())
     queue = default_queue()
     device = queue.device
     print(f"device: {device.name} ({device.platform.version})")

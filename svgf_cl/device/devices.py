@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 
 import pyopencl as cl
 
-from svgf_cl.device import apart, driver_caches, intel_runtime, probe
+from svgf_cl.device import apart, driver_caches, icd_files, intel_runtime, probe
 from svgf_cl.device.process import check_process
 from svgf_cl.errors import DeviceError
 from svgf_cl.io import cache
@@ -34,10 +34,12 @@ CPU_PLATFORMS = (intel_runtime.PLATFORM, POCL)
 # A simulator claims to be of every type; it finds bugs and is thousands of times slower than anything else.
 SIMULATOR = "Oclgrind"
 
-INSTALL_HINT = """Install one of:
-  Debian, Ubuntu:       apt-get install pocl-opencl-icd
-  x86-64 Linux, no root: pip install '.[cpu]' in a clone of svgf_cl
-  a GPU:                its vendor's driver with OpenCL"""
+# How to get one, by words that name it where it is there already.
+INSTALLATION = {
+    ("pocl", POCL.lower()): "Debian, Ubuntu:       apt-get install pocl-opencl-icd",
+    ("intel",): "x86-64 Linux, no root: pip install '.[cpu]' in a clone of svgf_cl",
+    ("gpu",): "a GPU:                its vendor's driver with OpenCL",
+}
 
 _lock = threading.Lock()  # threads that make their first queue at once shall share its context
 
@@ -127,9 +129,9 @@ def choose(reports: Sequence[DeviceReport]) -> DeviceReport:
     """
     if working := [report for report in _candidates(reports) if report.works]:
         return min(working, key=_rank)
-    if VARIABLE in os.environ:
+    if VARIABLE in os.environ and any(report.handle for report in reports):
         raise DeviceError(f"{VARIABLE}={os.environ[VARIABLE]!r} names a device that does not work")
-    raise DeviceError(f"No OpenCL device works. {INSTALL_HINT}")
+    raise DeviceError(_what_to_do(reports))
 
 
 def default_device() -> cl.Device:
@@ -195,18 +197,29 @@ def _context(device: cl.Device) -> cl.Context:
 
 def _survey(*, refresh: bool = False) -> list[DeviceReport]:
     cache.tell()
+    unusable = _unusable_drivers() if refresh else []
     reports = []
     platforms = _platforms()
     for index, platform in enumerate(platforms):
         try:
             devices = platform.get_devices()
         except cl.Error as error:
-            reports.append(_unlisted(str(index), platform.name, platform.version, apart.summary(str(error))))
+            reports.append(_unlisted(str(index), platform.name, apart.summary(str(error)), platform.version))
             continue
+        if not devices:
+            reports.append(_unlisted(str(index), platform.name, "the driver lists no device", platform.version))
         reports += [_report(f"{index}:{number}", device, refresh) for number, device in enumerate(devices)]
     if reason := intel_runtime.why_unlisted({platform.name for platform in platforms}):
-        reports.append(_unlisted("-", intel_runtime.PLATFORM, "version unknown", reason))
-    return reports
+        reports.append(_unlisted("-", intel_runtime.PLATFORM, reason))
+    return [*reports, *unusable]
+
+
+def _unusable_drivers() -> list[DeviceReport]:
+    """The drivers that the loader passes over; `DeviceError` where one of them would end this process."""
+    try:
+        return [_unlisted("-", name, fault) for name, fault in icd_files.faults()]
+    except apart.NoAnswerError as error:
+        raise DeviceError(f"{error}; repair or remove that driver, or name others in {icd_files.VARIABLE}") from error
 
 
 def _platforms() -> list[cl.Platform]:
@@ -231,7 +244,7 @@ def _report(selector: str, device: cl.Device, refresh: bool) -> DeviceReport:
     )
 
 
-def _unlisted(selector: str, platform: str, version: str, reason: str) -> DeviceReport:
+def _unlisted(selector: str, platform: str, reason: str, version: str = "") -> DeviceReport:
     return DeviceReport(selector, platform, version, "no device", "unknown", "other", reason)
 
 
@@ -245,7 +258,7 @@ def _kind(device: cl.Device) -> str:
 def _candidates(reports: Sequence[DeviceReport]) -> list[DeviceReport]:
     """Return the reports that `choose` may choose from: the one that the user names, else all."""
     name = os.environ.get(VARIABLE)
-    if name is None:
+    if name is None or not any(report.handle for report in reports):
         return list(reports)
     try:
         devices = cl.choose_devices(interactive=False, answers=name.split(":"))
@@ -264,6 +277,18 @@ def _rank(report: DeviceReport) -> tuple[int, int, bool, int]:
         known = report.platform in CPU_PLATFORMS
         return kind, CPU_PLATFORMS.index(report.platform) if known else len(CPU_PLATFORMS), False, 0
     return kind, 0, device.host_unified_memory, -device.max_compute_units * device.max_clock_frequency
+
+
+def _what_to_do(reports: Sequence[DeviceReport]) -> str:
+    """The error where no device works: a driver that is there is to be repaired, else one is to be installed."""
+    there = sorted({report.platform for report in reports})
+    known = " ".join((*there, *(report.reason for report in reports))).lower()
+    others = [how for words, how in INSTALLATION.items() if not any(word in known for word in words)]
+    if there:
+        reasons = f"the reasons are given for {', '.join(there)}. Repair or remove it, or install another driver"
+    else:
+        reasons = "no driver is installed. Install one of"
+    return "\n  ".join((f"No OpenCL device works; {reasons}:", *others))
 
 
 def _table(reports: Sequence[DeviceReport]) -> str:

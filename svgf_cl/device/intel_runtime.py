@@ -18,14 +18,13 @@ import warnings
 from collections.abc import Container
 from pathlib import Path
 
+from svgf_cl.device.icd_files import SYSTEM_VENDORS, VARIABLE
 from svgf_cl.errors import SvgfError
 from svgf_cl.io.atomic import written_whole
 from svgf_cl.io.cache import cache_folder, is_usable, temporary_folder
 
 PLATFORM = "Intel(R) OpenCL"
 LIBRARY = "libintelocl.so"
-SYSTEM_VENDORS = Path("/etc/OpenCL/vendors")
-VARIABLE = "OCL_ICD_VENDORS"
 
 
 def find() -> Path | None:

@@ -13,7 +13,7 @@ import pytest
 
 from svgf_cl import DeviceError
 from svgf_cl.cli import main
-from svgf_cl.device import devices, intel_runtime, probe
+from svgf_cl.device import apart, devices, icd_files, intel_runtime, probe
 
 POCL = "Portable Computing Language"
 INTEL = intel_runtime.PLATFORM
@@ -60,6 +60,7 @@ def machine(monkeypatch):
         monkeypatch.setattr(cl, "get_platforms", lambda: list(platforms))
         monkeypatch.setattr(intel_runtime, "register", lambda: None)
         monkeypatch.setattr(intel_runtime, "find", lambda: None)
+        monkeypatch.setattr(icd_files, "faults", list)
         monkeypatch.setattr(probe, "reason", lambda device, *, refresh: device.reason)
 
     return install
@@ -148,6 +149,67 @@ def test_error_lists_every_device_and_what_to_install(machine):
         devices.default_device()
     for text in ("one", "no memory", "two", "no CPU", "pocl-opencl-icd", ".[cpu]"):
         assert text in str(error.value)
+
+
+def test_what_is_there_but_broken_is_to_be_repaired_and_not_installed(machine):
+    reason = "error: unknown target CPU 'generic'"
+    machine(FakePlatform(POCL, [FakeDevice("pthread", reason=reason)]))
+    with pytest.raises(DeviceError) as error:
+        devices.default_device()
+    assert "apt-get" not in str(error.value)
+    for text in (POCL, reason, "Repair or remove it, or install another", ".[cpu]"):
+        assert text in str(error.value)
+
+
+def test_a_platform_without_devices_is_reported(machine):
+    machine(FakePlatform(POCL), FakePlatform("A", [gpu("good")]))
+    empty, good = devices.list_devices()
+    assert (empty.selector, empty.platform, empty.reason) == ("0", POCL, "the driver lists no device")
+    assert good.is_default
+    machine(FakePlatform(POCL))
+    with pytest.raises(DeviceError, match="lists no device") as error:
+        devices.default_device()
+    assert "apt-get" not in str(error.value)
+
+
+def test_drivers_that_the_loader_passes_over_are_reported_where_none_works(machine, monkeypatch):
+    machine()
+    monkeypatch.setattr(icd_files, "faults", lambda: [("/etc/vendors/pocl.icd", "names libpocl.so, which is broken")])
+    with pytest.raises(DeviceError, match=r"/etc/vendors/pocl.icd.*: names libpocl.so, which is broken") as error:
+        devices.default_device()
+    assert "apt-get" not in str(error.value)
+    assert [report.reason for report in devices.list_devices(refresh=True)] == ["names libpocl.so, which is broken"]
+
+
+def test_a_driver_that_would_end_this_process_is_not_loaded(machine, monkeypatch):
+    def crash():
+        raise apart.NoAnswerError("libbad.so: when it is loaded, the driver crashes (SIGBUS)")
+
+    machine(FakePlatform("A", [gpu("good")]))
+    monkeypatch.setattr(icd_files, "faults", crash)
+    monkeypatch.delattr(cl, "get_platforms")
+    with pytest.raises(DeviceError, match=r"libbad.so: .* repair or remove that driver, or name others in OCL_ICD"):
+        devices.list_devices(refresh=True)
+
+
+@pytest.mark.parametrize("name", ["", "0", "nothing", "9:9"])
+def test_a_name_is_not_to_blame_where_there_is_no_device_at_all(machine, monkeypatch, name):
+    machine()
+    monkeypatch.setenv("PYOPENCL_CTX", name)
+    with pytest.raises(DeviceError, match="no driver is installed"):
+        devices.default_device()
+
+
+@pytest.mark.parametrize("name", ["", " ", ":", "::", "-1", "0:-1", "0:x", "0:0:0", "0:0,0", "1e9", "\u0660"])
+def test_any_name_chooses_a_device_or_is_refused(machine, monkeypatch, name):
+    machine(FakePlatform("A", [gpu("one"), gpu("two")]), FakePlatform("B", [FakeDevice("three")]))
+    monkeypatch.setenv("PYOPENCL_CTX", name)
+    chosen = []
+    try:
+        chosen.append(devices.default_device().name)
+    except DeviceError as error:
+        chosen.append(str(error).partition(" name")[0])
+    assert chosen[0] in ("one", "two", "three", f"PYOPENCL_CTX={name!r}")
 
 
 def test_memory_is_doubted_before_giving_up(machine, monkeypatch):
