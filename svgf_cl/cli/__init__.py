@@ -31,6 +31,7 @@ COMMANDS: dict[str, Command] = {
 GROUP = "svgf_cl.commands"
 # As the help lists them; any others come behind.
 ORDER = ("devices", "demo", "scenes", "render", "check", "denoise", "compare", "bench", "tune")
+INTERRUPTED = 130  # as a shell has it of a program that Ctrl-C ends
 # What a command says that takes whatever comes.
 ANYTHING = {"ignore_unknown_options": True, "allow_extra_args": True}
 
@@ -107,7 +108,10 @@ def leave(app: typer.Typer, arguments: Sequence[str], name: str, usage: str) -> 
             stream.reconfigure(errors="backslashreplace")
     try:
         with plain_warnings(name):
-            sys.exit(app(list(arguments), prog_name=usage, standalone_mode=False))
+            code = app(list(arguments), prog_name=usage, standalone_mode=False)
+        if code == INTERRUPTED:
+            raise KeyboardInterrupt
+        sys.exit(code)
     except SvgfError as error:
         complaint = str(error)
     except UsageError as error:
@@ -117,8 +121,9 @@ def leave(app: typer.Typer, arguments: Sequence[str], name: str, usage: str) -> 
         complaint = f"not enough memory: {error}"
     except OSError as error:  # a path that no command has looked at: the system says what is wrong with it
         complaint = f"{error.filename or 'output'}: {error.strerror or error}"
-    except (KeyboardInterrupt, typer.Abort):  # which of them, or neither, depends on typer's version
-        sys.exit(130)
+    except (KeyboardInterrupt, typer.Abort):  # which of them, or the code alone, depends on typer's version
+        print(f"{name}: interrupted", file=sys.stderr)
+        sys.exit(INTERRUPTED)
     print(f"{name}: {printable(complaint)}", file=sys.stderr)
     sys.exit(2)
 

@@ -17,6 +17,7 @@ Item = TypeVar("Item")
 SLOWEST_STEP = 600.0  # seconds between two steps from which the time left can still be told
 
 WIDE = 160  # columns where the output is no terminal: nothing is gained by breaking words in a file
+NARROW = 72  # columns where a terminal has fewer: it breaks lines itself, where a table would leave out numbers
 
 
 @contextmanager
@@ -65,7 +66,13 @@ def show(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], word
         table.add_column(column, justify="left" if index < words else "right")
     for row in rows:
         table.add_row(*row)
-    Console(width=None if sys.stdout.isatty() else WIDE).print(table)
+    screen().print(table)
+
+
+def screen() -> Console:
+    """What tables are printed on; nowhere, where the standard output is closed."""
+    terminal = sys.stdout is not None and sys.stdout.isatty()
+    return Console(width=max(NARROW, Console().width) if terminal else WIDE)
 
 
 def kept_of(count: int) -> str:

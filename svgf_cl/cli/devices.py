@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from svgf_cl.cli.console import screen
 from svgf_cl.device.devices import DeviceReport, choose, list_devices
 from svgf_cl.device.tuning import stored_tuning
 
@@ -36,7 +36,7 @@ def _show(reports: Sequence[DeviceReport]) -> None:
         mark = f"{report.selector}{' *' if report.is_default else ''}"
         # As Text, because names and reasons may hold what rich takes for markup.
         table.add_row(mark, "yes" if report.works else "no", Text(_description(report)))
-    Console().print(table)
+    screen().print(table)
 
 
 def _description(report: DeviceReport) -> str:

@@ -7,6 +7,7 @@ import json
 import os
 import re
 import socket
+import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -54,15 +55,17 @@ def output_folder(path: Path) -> Path:
     Raises
     ------
     FileError
-        Where it cannot be made, or is read-only.
+        Where it cannot be made or written to.
     """
+    made: list[Path] = []
     try:
-        _remove(_make(path))
+        made = _make(path)
+        try_to_write(path)
     except OSError as error:
-        raise FileError(f"{path}: cannot be made a folder for the output ({error.strerror})") from error
+        raise FileError(f"{path}: cannot be a folder for the output ({error.strerror or error})") from error
+    finally:
+        _remove(made)
     if path.is_dir():
-        if not os.access(path, os.W_OK | os.X_OK):
-            raise FileError(f"{path}: expected a folder that can be written to, got one that is read-only")
         _delete_leftovers(path)
     return path
 
@@ -73,6 +76,13 @@ def output_file(path: Path) -> Path:
     if path.is_dir():
         raise FileError(f"{path}: expected a file to write, got a folder")
     return path
+
+
+def try_to_write(folder: Path) -> None:
+    """Write to a file without a name in `folder`; `OSError` where nothing can be written there."""
+    with tempfile.TemporaryFile(dir=folder) as file:
+        file.write(b"\0")
+        file.flush()
 
 
 def require(path: Path) -> None:

@@ -17,6 +17,7 @@ import platformdirs
 import pyopencl as cl
 
 from svgf_cl.errors import FileError
+from svgf_cl.io.atomic import try_to_write
 
 # Binaries of all kernels and of the tracer, and some more: on a disk with less room left, writers fail half way.
 ROOM = 64 * 2**20
@@ -50,7 +51,7 @@ def is_usable(folder: Path) -> bool:
     Where they cannot, `tell` says so.
     """
     try:
-        _try_to_write(folder)
+        _try(folder)
     except OSError as error:
         _problems.append(f"{folder}: cannot be written ({error.strerror or error})")
         return False
@@ -97,14 +98,12 @@ def device_key(device: cl.Device) -> str:
     return " | ".join((device.platform.name, device.platform.version, device.name, device.driver_version))
 
 
-def _try_to_write(folder: Path) -> None:
+def _try(folder: Path) -> None:
     """Write to a folder, or where it would be made; nothing stays there."""
     place = folder
     while not os.path.lexists(place):
         place = place.parent
-    with tempfile.TemporaryFile(dir=place) as file:
-        file.write(b"\0")
-        file.flush()
+    try_to_write(place)
     room = shutil.disk_usage(place)
     if room.total and room.free < ROOM:
         raise OSError(errno.ENOSPC, f"less than {ROOM >> 20} MiB of room")

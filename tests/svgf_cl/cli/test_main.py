@@ -57,7 +57,7 @@ def test_what_comes_from_outside_leaves_no_traceback(
     monkeypatch.setattr("svgf_cl.bench.suite.Suite.run", broken)
     assert run("bench") == code
     said = capsys.readouterr().err
-    assert said.strip() == ("svgf-cl: not enough memory: 8 EiB" if code == 2 else "")
+    assert said.strip() == ("svgf-cl: not enough memory: 8 EiB" if code == 2 else "svgf-cl: interrupted")
 
 
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import socket
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -139,15 +141,29 @@ def test_what_cannot_be_a_folder_is_refused_and_nothing_is_left(tmp_path: Path) 
     (tmp_path / "link").symlink_to(tmp_path / "nowhere")
     for path in ("file", "file/below", "link", "a/b/" + "x" * 300):
         for whole in (tmp_path / path, Path(os.path.relpath(tmp_path / path))):
-            with pytest.raises(FileError, match="cannot be made a folder"):
+            with pytest.raises(FileError, match="cannot be a folder for the output"):
                 output_folder(whole)
     assert sorted(place.name for place in tmp_path.iterdir()) == ["file", "link"]
 
 
-def test_a_folder_that_is_read_only_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(os, "access", lambda *_: False)  # root may write anywhere
-    with pytest.raises(FileError, match="read-only"):
-        output_folder(tmp_path)
+def test_a_folder_that_cannot_be_written_to_is_refused_before_any_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(**_: object) -> None:
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS))
+
+    monkeypatch.setattr(tempfile, "TemporaryFile", refuse)  # root may write anywhere
+    for path in (tmp_path, tmp_path / "a" / "b"):
+        with pytest.raises(FileError, match=r"cannot be a folder for the output \(Read-only file system\)"):
+            output_folder(path)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("folder", ["/proc", "/proc/self/a", "/dev/null", "/dev/null/a"])
+def test_what_root_cannot_write_to_either(folder: str) -> None:
+    for check in (output_folder, lambda path: output_file(path / "a.png")):
+        with pytest.raises(FileError, match="cannot be a folder for the output"):
+            check(Path(folder))
 
 
 def test_a_file_that_is_a_folder_is_refused(tmp_path: Path) -> None:

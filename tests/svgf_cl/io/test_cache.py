@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
 import warnings
 from collections import namedtuple
 from pathlib import Path
@@ -15,7 +16,6 @@ import platformdirs
 import pytest
 
 from svgf_cl.errors import FileError
-from svgf_cl.io import cache
 from svgf_cl.io.atomic import written_whole
 from svgf_cl.io.cache import NOWHERE, ROOM, is_usable, keeping, tell, users_folder
 
@@ -67,7 +67,7 @@ def test_what_the_system_refuses(code: int, tmp_path: Path, monkeypatch: pytest.
     def refuse(**_: object) -> None:
         raise OSError(code, os.strerror(code))
 
-    monkeypatch.setattr(cache.tempfile, "TemporaryFile", refuse)
+    monkeypatch.setattr(tempfile, "TemporaryFile", refuse)
     assert not is_usable(tmp_path)
     with pytest.warns(UserWarning, match=os.strerror(code)):
         tell()

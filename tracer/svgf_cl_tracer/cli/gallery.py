@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -12,12 +11,11 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 import typer
 from rich.color import Color
-from rich.console import Console
 from rich.style import Style
 from rich.table import Table
 from rich.text import Text
 
-from svgf_cl.cli.console import WIDE, tracked
+from svgf_cl.cli.console import screen, tracked
 from svgf_cl.cli.options import Exposure, Size, parse_size
 from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Shape
@@ -111,7 +109,7 @@ def middle_frame(entry: Entry, shape: Shape, *, spp: int, sky: Sky | None, expos
 
 def list_scenes(entries: Sequence[Entry], draw: Callable[[Entry, Shape], Bytes]) -> None:
     """Print a table of scenes, with thumbnails where there is colour to draw them in."""
-    console = Console(width=None if sys.stdout.isatty() else WIDE)
+    console = screen()
     coloured = console.color_system is not None
     table = Table("scene", "frames", "what is hard", *(["middle frame"] if coloured else []), show_lines=coloured)
     for entry in tracked(entries, len(entries), "rendering") if coloured else entries:
