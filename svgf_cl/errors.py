@@ -11,15 +11,21 @@ class FrameError(SvgfError):
     """A frame's field is missing, of the wrong shape or of the wrong type."""
 
     def __init__(self, field: str, expected: str, got: str) -> None:
-        super().__init__(f"Frame.{field}: expected {expected}, got {got}")
+        super().__init__(field, expected, got)  # as they are: another process makes it anew from them
         self.field = field
+
+    def __str__(self) -> str:
+        return "Frame.{}: expected {}, got {}".format(*self.args)
 
 
 class ArgumentError(SvgfError):
     """An argument of a call beside the frame's fields is wrong: where the result goes, what to wait for."""
 
     def __init__(self, argument: str, expected: str, got: str) -> None:
-        super().__init__(f"{argument}: expected {expected}, got {got}")
+        super().__init__(argument, expected, got)
+
+    def __str__(self) -> str:
+        return "{}: expected {}, got {}".format(*self.args)
 
 
 class SettingsError(SvgfError):

@@ -7,8 +7,51 @@ from pathlib import Path
 import pytest
 
 from scripts import pass_table, scene_description
+from svgf_cl.device import apart
+from svgf_cl.filters.formats import HALF_MAX
+from svgf_cl.io import cache, exr, frames
+from svgf_cl.oracle import temporal
+from svgf_cl_tracer import panorama
+from svgf_cl_tracer.description import document
+from svgf_cl_tracer.gltf import model, nodes
 
 ROOT = Path(__file__).parents[1]
+
+
+def written(value: float) -> str:
+    """As the pages write it: 1e-6."""
+    return f"{value:g}".replace("e+", "e").replace("e-0", "e-")
+
+
+def power(value: int) -> str:
+    """A power of two, as the pages write it."""
+    assert value.bit_count() == 1
+    return f"2^{value.bit_length() - 1}"
+
+
+# What a page says of a limit, made from where the code declares it.
+LIMITS = (
+    ("files.md", f"below {exr.TRUSTED >> 30} GiB, or below {exr.MAX_RATIO} times the size of the file"),
+    ("files.md", f"nodes make a tree at most {nodes.MAX_DEPTH} deep"),
+    ("files.md", f"{power(model.MAX_TRIANGLES)} over all nodes"),
+    ("files.md", f"of a sky {power(panorama.MAX_PIXELS)}"),
+    ("files.md", f"`scene.json` | {document.MAX_BYTES >> 20} MiB"),
+    ("files.md", f"less than {cache.ROOM >> 20} MiB"),
+    ("files.md", f"within {apart.TIMEOUT_SECONDS} seconds"),
+    ("conventions.md", f"whole numbers up to {power(frames.MAX_ID)}"),
+    ("conventions.md", "Depth is {} to {}".format(*map(written, temporal.DEPTH_RANGE))),
+    (
+        "conventions.md",
+        f"the length of a normal {written(temporal.NORMAL_FLOOR**0.5)} to {written(temporal.CHANNEL_MAX)}",
+    ),
+    ("conventions.md", "to {0}, radiance up to {0}".format(written(temporal.CHANNEL_MAX))),
+    ("conventions.md", f"is limited to {HALF_MAX:.0f}"),
+)
+
+
+@pytest.mark.parametrize(("page", "words"), LIMITS)
+def test_limits_in_the_pages_are_those_of_the_code(page: str, words: str) -> None:
+    assert words in " ".join((ROOT / "docs" / page).read_text().split())
 
 
 def test_the_description_of_scenes_is_up_to_date() -> None:

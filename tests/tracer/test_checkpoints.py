@@ -12,6 +12,7 @@ import pytest
 
 from svgf_cl_tracer.checkpoints import Checkpoints
 from svgf_cl_tracer.estimate import Estimate, Step
+from tests.disk import files_up_to
 
 NOTHING = Estimate.nothing(7)
 
@@ -49,6 +50,19 @@ def test_a_finer_estimate_takes_the_place_of_the_one_it_was_made_from(tmp_path: 
     checkpoints.replace(NOTHING, estimate(48))
     checkpoints.replace(estimate(16), estimate(32))
     assert sorted(path.name for path in tmp_path.iterdir()) == ["0003.000032.npz", "0003.000048.npz"]
+
+
+def test_what_cannot_be_written_is_said_once_and_ends_nothing(tmp_path: Path, untold: None) -> None:
+    checkpoints = Checkpoints(tmp_path, 3)
+    checkpoints.replace(NOTHING, estimate(16))
+    with files_up_to(100):
+        with pytest.warns(UserWarning, match=r"0003.000032.npz: cannot be written \(File too large\)"):
+            checkpoints.replace(estimate(16), estimate(32))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            checkpoints.replace(estimate(16), estimate(48))
+    assert_same(checkpoints.latest(NOTHING, lambda _: True), estimate(16))
+    assert len(list(tmp_path.iterdir())) == 1
 
 
 def flipped(content: bytes) -> bytes:
