@@ -112,6 +112,42 @@ def test_a_disk_that_fills_up_leaves_what_is_done(
     assert contents(out) == contents(denoised)
 
 
+@pytest.mark.parametrize("output", ["/proc/a", "/dev/null/a", "file/a/b"])
+def test_an_output_that_cannot_be_is_refused_before_any_work(output: str, tmp_path: Path, refused, monkeypatch) -> None:
+    (tmp_path / "file").touch()
+    damaged, folder = tmp_path / "frame.0000.exr", tmp_path / output
+    damaged.write_text("it would be an error to read this")
+    monkeypatch.setattr("svgf_cl.bench.suite.Suite.run", None)
+    for argv in (
+        ("denoise", damaged, "-o", folder),
+        ("check", damaged, "-o", folder / "a.png"),
+        ("bench", "-o", folder),
+    ):
+        refused("cannot be a folder for the output", *argv)
+
+
+def test_a_run_that_fails_leaves_no_empty_folder(rendered: Path, tmp_path: Path, refused, monkeypatch) -> None:
+    damaged, out = tmp_path / "frame.0000.exr", tmp_path / "a" / "b"
+    damaged.write_bytes((rendered / "frame.0000.exr").read_bytes()[:1000])
+    refused(damaged.name, "denoise", damaged, "-o", out)
+    refused(damaged.name, "check", damaged, "-o", out / "a.png")
+    refused("iterations", "denoise", rendered, "-o", out, "--set", "iterations=99")
+    refused("--only", "bench", "--only", "nothing", "-o", out)
+
+    def full(_: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "fsync", full)
+    refused("No space left on device", "denoise", rendered, "-o", out)
+    assert list(tmp_path.iterdir()) == [damaged]
+
+
+def test_tune_is_refused_where_nothing_can_be_stored(refused, monkeypatch) -> None:
+    monkeypatch.setattr("svgf_cl.device.tuning.cache_folder", lambda: Path("/dev/null/cache"))
+    monkeypatch.setattr("svgf_cl.bench.tuner.Tuner.search", None)
+    refused("/dev/null/cache: cannot be a folder for the output", "tune")
+
+
 @pytest.mark.parametrize("name", ["a b", "ü 日本", "new\nline", "-dash", "q?x=1", "frame.0000.exr"])
 def test_folders_of_any_name(name: str, rendered: Path, denoised: Path, tmp_path: Path) -> None:
     frames = Path(shutil.copytree(rendered, tmp_path / name / "in"))

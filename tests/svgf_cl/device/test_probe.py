@@ -2,22 +2,11 @@
 
 from __future__ import annotations
 
-import sys
-
 import pytest
 
 from svgf_cl.device import apart, probe
 
 KEY = "some device"
-
-POCL_3_0 = """clBuildProgram failed: BUILD_PROGRAM_FAILURE - clBuildProgram failed: BUILD_PROGRAM_FAILURE
-
-Build on <pyopencl.Device 'pthread-AMD EPYC' on 'Portable Computing Language' at 0x55977fd71760>:
-
-error: unknown target CPU 'generic'
-Device pthread-AMD EPYC failed to build the program
-
-(options: -I /tmp/lib/python3.11/site-packages/pyopencl/cl)"""
 
 
 @pytest.fixture
@@ -45,19 +34,6 @@ def answers(monkeypatch):
     return given
 
 
-@pytest.fixture
-def interpreter(monkeypatch, tmp_path):
-    """A function that puts a shell script in Python's place."""
-
-    def replace(script: str) -> None:
-        path = tmp_path / "python"
-        path.write_text(f"#!/bin/sh\n{script}\n")
-        path.chmod(0o755)
-        monkeypatch.setattr(sys, "executable", str(path))
-
-    return replace
-
-
 def test_working_device(queue, memory):
     assert probe.run(queue.device) == ""
     assert probe.reason(queue.device) == ""
@@ -74,37 +50,6 @@ def test_broken_compiler(queue, monkeypatch):
     reason = probe.run(queue.device)
     assert "no such CPU" in reason
     assert "\n" not in reason
-
-
-def test_an_interpreter_that_cannot_be_started_gives_no_answer(monkeypatch, tmp_path):
-    monkeypatch.setattr(sys, "executable", str(tmp_path))
-    with pytest.raises(apart.NoAnswerError, match=r"the probe cannot be started: .*Permission denied"):
-        probe._run_apart(KEY)
-
-
-@pytest.mark.parametrize(
-    ("script", "reason"),
-    [
-        ("kill -SEGV $$", "the driver crashes (SIGSEGV): the driver gives no reason"),
-        ("echo 'LLVM ERROR: broken' >&2; kill -ABRT $$", "the driver crashes (SIGABRT): LLVM ERROR: broken"),
-        ("echo 'no such module' >&2; exit 3", "the probe fails: no such module"),
-        ("true", "the probe fails: the driver gives no reason"),
-        ("exec sleep 60", "the driver hangs: no answer within 0.5 s"),
-    ],
-    ids=["segfault", "abort", "exit", "silent", "hang"],
-)
-def test_a_driver_that_misbehaves_gives_no_answer(interpreter, monkeypatch, script, reason):
-    if "sleep" in script:
-        monkeypatch.setattr(apart, "TIMEOUT_SECONDS", 0.5)
-    interpreter(script)
-    with pytest.raises(apart.NoAnswerError) as error:
-        probe._run_apart(KEY)
-    assert str(error.value) == reason
-
-
-def test_a_driver_that_prints_before_and_after_the_answer(interpreter):
-    interpreter(f"""echo hello from the driver; echo '{apart.answer("says no")}'; echo bye""")
-    assert probe._run_apart(KEY) == "says no"
 
 
 def test_a_device_that_only_this_process_lists(queue):
@@ -164,16 +109,3 @@ def test_a_memory_that_cannot_be_written_is_not_silent_and_asks_once_a_process(m
     with pytest.warns(UserWarning, match=r"cache/probes.json: cannot be written .* each run asks devices"):
         assert probe.reason(None) == ""
     assert probe.reason(None) == ""
-
-
-@pytest.mark.parametrize(
-    ("log", "line"),
-    [
-        (POCL_3_0, "error: unknown target CPU 'generic'"),
-        ("clCreateContext failed: OUT_OF_HOST_MEMORY", "clCreateContext failed: OUT_OF_HOST_MEMORY"),
-        ("a\nb\n\n", "b"),
-        ("", "the driver gives no reason"),
-    ],
-)
-def test_summary(log, line):
-    assert apart.summary(log) == line

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from svgf_cl.io.frames import read_frame, write_frame
+from svgf_cl_tracer import SceneError
 from tests.command_line import assert_goes_on, contents, run
 
 FRAMES = ("--frames", "4", "--size", "32x18")
@@ -70,3 +71,28 @@ def test_a_name_that_is_too_long_is_refused_in_one_line(tmp_path: Path, capsys) 
     said = capsys.readouterr().err
     assert "File name too long" in said
     assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize("output", ["/proc/a", "/dev/null/a", "file/a/b"])
+def test_an_output_that_cannot_be_is_refused_before_any_work(output: str, tmp_path: Path, refused, monkeypatch) -> None:
+    (tmp_path / "file").touch()
+    monkeypatch.setattr("svgf_cl_tracer.render_frame", None)
+    monkeypatch.setattr("svgf_cl_tracer.demo.Demo.denoise", None)
+    for argv in (("render", "cornell", "-o", tmp_path / output), ("demo", "-o", tmp_path / output)):
+        refused("cannot be a folder for the output", *argv)
+    refused("cannot be a folder for the output", "scenes", "-o", tmp_path / output / "a.png")
+    (tmp_path / "a.png").mkdir()
+    refused("expected a file to write, got a folder", "scenes", "-o", tmp_path / "a.png")
+
+
+def test_a_run_that_fails_leaves_no_empty_folder(tmp_path: Path, refused, monkeypatch) -> None:
+    def fail(*_: object, **__: object) -> None:
+        raise SceneError("it cannot be rendered")
+
+    out = tmp_path / "a" / "b"
+    refused("found nothing", "render", "nowhere", "-o", out)
+    refused("found nothing", "scenes", "nowhere", "-o", out / "a.png")
+    monkeypatch.setattr("svgf_cl_tracer.render_frame", fail)
+    for argv in (("render", "cornell", *FRAMES), ("demo", *FRAMES)):
+        refused("it cannot be rendered", *argv, "-o", out)
+    assert not list(tmp_path.iterdir())
