@@ -18,6 +18,7 @@ from svgf_cl.filters import FILTERS
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Shape
+from svgf_cl.io import cache
 
 # Is told the label and the event of every pass as soon as it is on the queue.
 AfterPass = Callable[[str, cl.Event], None]
@@ -48,6 +49,7 @@ def check_inputs(inputs: Inputs) -> Inputs:
 def check_queue(queue: cl.CommandQueue | None) -> cl.CommandQueue:
     """A queue on the default device for None; `SvgfError` for one that may run the passes out of order, or is dead."""
     check_process()
+    cache.tell()
     if queue is None:
         return devices.default_queue()
     if not isinstance(queue, cl.CommandQueue):

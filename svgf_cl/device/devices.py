@@ -285,7 +285,9 @@ def _what_to_do(reports: Sequence[DeviceReport]) -> str:
     known = " ".join((*there, *(report.reason for report in reports))).lower()
     others = [how for words, how in INSTALLATION.items() if not any(word in known for word in words)]
     if there:
-        reasons = f"the reasons are given for {', '.join(there)}. Repair or remove it, or install another driver"
+        reasons = (
+            f"the reasons are given for {', '.join(there)}. Repair or remove what fails, or install another driver"
+        )
     else:
         reasons = "no driver is installed. Install one of"
     return "\n  ".join((f"No OpenCL device works; {reasons}:", *others))

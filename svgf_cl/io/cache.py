@@ -25,6 +25,9 @@ ROOM = 64 * 2**20
 # In place of a cache folder for a user without a home: nothing can be read or written there.
 NOWHERE = Path(os.devnull, "no home folder")
 
+# What can be written in a container that is read-only as a whole.
+SHARED_MEMORY = "/dev/shm"
+
 _problems: list[str] = []
 _told: list[str] = []
 
@@ -86,9 +89,12 @@ def temporary_folder() -> Path:
     Raises
     ------
     OSError
-        Where no temporary folder can be made either.
+        Where no temporary folder can be made either, not even in shared memory.
     """
-    folder = Path(tempfile.mkdtemp(prefix="svgf_cl-"))
+    try:
+        folder = Path(tempfile.mkdtemp(prefix="svgf_cl-"))
+    except OSError:
+        folder = Path(tempfile.mkdtemp(prefix="svgf_cl-", dir=SHARED_MEMORY))
     atexit.register(_delete, folder, os.getpid())
     return folder
 

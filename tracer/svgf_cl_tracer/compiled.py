@@ -25,7 +25,7 @@ def _digest() -> str:
 FOLDER = cache_folder() / "compiled" / _digest()
 
 
-IS_KEPT = is_usable(cache_folder())
+IS_KEPT = is_usable(FOLDER)
 tell()
 
 OPTIONS: dict[str, Any] = {

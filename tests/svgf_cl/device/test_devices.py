@@ -157,7 +157,7 @@ def test_what_is_there_but_broken_is_to_be_repaired_and_not_installed(machine):
     with pytest.raises(DeviceError) as error:
         devices.default_device()
     assert "apt-get" not in str(error.value)
-    for text in (POCL, reason, "Repair or remove it, or install another", ".[cpu]"):
+    for text in (POCL, reason, "Repair or remove what fails, or install another", ".[cpu]"):
         assert text in str(error.value)
 
 

@@ -16,6 +16,7 @@ import platformdirs
 import pytest
 
 from svgf_cl.errors import FileError
+from svgf_cl.io import cache
 from svgf_cl.io.atomic import written_whole
 from svgf_cl.io.cache import NOWHERE, ROOM, is_usable, keeping, tell, users_folder
 
@@ -123,6 +124,23 @@ def test_a_temporary_folder_is_gone_with_its_process_and_not_with_a_fork_of_it(t
     assert child.returncode == 0, child.stderr
     assert Path(child.stdout.splitlines()[0]).parent == tmp_path
     assert not list(tmp_path.iterdir())
+
+
+def test_a_read_only_container_has_its_shared_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    make = tempfile.mkdtemp
+
+    def only_there(prefix: str, dir: str | None = None) -> str:
+        if dir is None:
+            raise FileNotFoundError("No usable temporary directory found")
+        return make(prefix=prefix, dir=dir)
+
+    monkeypatch.setattr(tempfile, "mkdtemp", only_there)
+    monkeypatch.setattr(cache, "SHARED_MEMORY", str(tmp_path))
+    folder = cache.temporary_folder.__wrapped__()
+    assert folder.parent == tmp_path
+    monkeypatch.setattr(cache, "SHARED_MEMORY", "/dev/null")
+    with pytest.raises(OSError, match="/dev/null"):
+        cache.temporary_folder.__wrapped__()
 
 
 @pytest.mark.parametrize("home", [{"HOME": "/proc/self"}, {"XDG_CACHE_HOME": "/dev/null"}], ids=str)
