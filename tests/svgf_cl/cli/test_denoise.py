@@ -103,7 +103,7 @@ def test_a_frame_of_nothing_but_nan(frames: Path, refused) -> None:
 
 def test_an_output_that_cannot_be_written(rendered: Path, tmp_path: Path, refused) -> None:
     (tmp_path / "file").touch()
-    refused("cannot be made a folder", "denoise", rendered, "-o", tmp_path / "file" / "out")
+    refused("cannot be a folder for the output", "denoise", rendered, "-o", tmp_path / "file" / "out")
 
 
 def test_denoise_never_replaces_its_input(rendered: Path, tmp_path: Path, refused) -> None:

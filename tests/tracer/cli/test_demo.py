@@ -26,7 +26,7 @@ def test_a_demo_too_small_to_be_measured(tmp_path: Path, refused) -> None:
 
 def test_an_output_that_cannot_be_written(tmp_path: Path, refused) -> None:
     (tmp_path / "file").touch()
-    refused("cannot be made a folder", "demo", "-o", tmp_path / "file" / "out")
+    refused("cannot be a folder for the output", "demo", "-o", tmp_path / "file" / "out")
 
 
 def test_rendering_without_the_tracer_says_how_to_get_it(tmp_path: Path, refused, monkeypatch) -> None:

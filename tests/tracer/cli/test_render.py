@@ -148,7 +148,7 @@ def test_frames_of_an_earlier_run_are_not_mixed_in(frames: Path, refused) -> Non
 
 def test_an_output_that_cannot_be_written(tmp_path: Path, refused) -> None:
     (tmp_path / "file").touch()
-    refused("cannot be made a folder", "render", "cornell", "-o", tmp_path / "file" / "out")
+    refused("cannot be a folder for the output", "render", "cornell", "-o", tmp_path / "file" / "out")
 
 
 def test_rendering_without_the_tracer_says_how_to_get_it(tmp_path: Path, refused, monkeypatch) -> None:
