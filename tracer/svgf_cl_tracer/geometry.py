@@ -76,10 +76,10 @@ class Instance:
         if self.normals is None:
             corners = self.corners_at(time)
             face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-            return _unit(np.repeat(face[:, None], 3, axis=1))
+            return unit(np.repeat(face[:, None], 3, axis=1))
         if self.motion is None:
             return self.normals
-        return _unit(_product(self.normals, cofactors(self.motion.matrix(time)[:3, :3])))
+        return unit(_product(self.normals, cofactors(self.motion.matrix(time)[:3, :3])))
 
     def mirrored_at(self, time: float) -> bool:
         """Whether its corners run clockwise seen from the front, in the world at `time` in seconds."""
@@ -282,7 +282,7 @@ def _product(vectors: NDArray[np.floating], matrix: Float64) -> Float64:
     return vectors[..., :1] * matrix[:, 0] + vectors[..., 1:2] * matrix[:, 1] + vectors[..., 2:] * matrix[:, 2]
 
 
-def _unit(vectors: NDArray[np.floating]) -> NDArray[np.floating]:
+def unit(vectors: NDArray[np.floating]) -> NDArray[np.floating]:
     """`vectors` (..., 3) at length 1; those of length 0 as they are."""
     length = np.sqrt(np.square(vectors).sum(-1, keepdims=True))
     return vectors / np.where(length > 0.0, length, 1.0)
