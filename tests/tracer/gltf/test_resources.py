@@ -25,6 +25,9 @@ TEXT = base64.b64encode(DATA).decode()
         ("a%2Fb.bin", "a/b.bin"),
         ("./a/../a/b.bin", "a/b.bin"),
         ("data/a.bin", "data/a.bin"),
+        ("data%5Ca.bin", "data/a.bin"),
+        ("DATA\\A.bin", "data/a.bin"),
+        ("u\u0308.bin", "\u00fc.bin"),
     ],
 )
 def test_a_file_beside_is_found_however_its_name_is_written(uri: str, name: str, tmp_path: Path) -> None:
@@ -61,11 +64,20 @@ def test_nothing_outside_the_folder_is_read(uri: str, tmp_path: Path) -> None:
     (tmp_path / "a.bin").write_bytes(DATA)
     (tmp_path / "inner").mkdir()
     (tmp_path / "inner" / "link").symlink_to(tmp_path / "a.bin")
-    with pytest.raises(SceneError, match="expected a file in the model's folder or below, found '"):
+    with pytest.raises(SceneError, match="expected a file in the model's folder or below, found none called '"):
         resource(tmp_path / "inner", uri)
 
 
 @pytest.mark.parametrize("uri", ["http://localhost:1/a.bin", "file:///etc/passwd", "none.bin", "", ".", "a\0b"])
 def test_what_is_not_there_is_named(uri: str, tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match=r"expected (a file beside the model, found none called|the name of a file)"):
+    with pytest.raises(SceneError, match=r"expected a file in the model's folder or below, found none called '"):
+        resource(tmp_path, uri)
+
+
+@pytest.mark.parametrize(
+    "uri", ["data:;base64,@@@@", "data:;base64,AAAA-_AA", "data:;base64,AAAAA", "data:", "data:AAAA"]
+)
+def test_damaged_data_is_refused(uri: str, tmp_path: Path) -> None:
+    """Python leaves out what is no base64, and all that is behind moves up."""
+    with pytest.raises(SceneError, match=r"expected data (in base64|behind a comma), found"):
         resource(tmp_path, uri)

@@ -1,13 +1,15 @@
-"""What of a file is not shown, or not as the file has it: a line a kind, told from its JSON."""
+"""What of a file is not shown, or not as the file has it, told from its JSON."""
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from .extensions import INVISIBLE, READ, WITH_FALLBACK
-from .file import Gltf
+from svgf_cl.errors import shown as quoted
+from svgf_cl_tracer.losses import Losses
+
+from .extensions import INVISIBLE, LIGHTS, READ, WITH_FALLBACK
+from .file import Gltf, name_of
 from .materials import base_texture
 from .nodes import REST, Nodes
 from .primitives import MODES, TRIANGLES, is_shown, mode_of
@@ -20,8 +22,8 @@ UNREAD_EXTENSION_TEXTURES = ("transmissionTexture", "specularTexture", "specular
 REPEAT, NEAREST = 10497, 9728
 
 
-def losses(gltf: Gltf, nodes: Nodes) -> Iterator[str]:
-    """What a user should know who expects to see the file as it is, in a few words each.
+def losses_of(gltf: Gltf, nodes: Nodes) -> Losses:
+    """What a user should know who expects to see the file as it is.
 
     Parameters
     ----------
@@ -29,28 +31,25 @@ def losses(gltf: Gltf, nodes: Nodes) -> Iterator[str]:
     nodes : Nodes
         Those that are shown.
     """
-    chains = list(nodes.chains())
+    losses, chains = Losses(), list(nodes.chains())
     shown = [nodes.node(chain) for chain in chains]
     primitives = [p for index in _used(shown, "mesh") for p in gltf.item("meshes", index)["primitives"]]
-    materials = [gltf.item("materials", index) for index in _used(primitives, "material")]
-    yield from _of_extensions(gltf)
-    yield from _of_scenes(gltf, {index for chain in chains for index in chain})
-    yield from _of_primitives(gltf, primitives)
-    yield from _of_materials(gltf, materials)
-    yield from _of_cameras(gltf, shown)
-    yield from _of_animations(gltf, shown)
+    for name in sorted({*gltf.document.get("extensionsUsed", []), *_extensions(gltf.document)}):
+        if name not in READ | INVISIBLE | WITH_FALLBACK:
+            losses.add("extensions that are not read", name)
+    _add_scenes(losses, gltf, {index for chain in chains for index in chain})
+    for primitive in primitives:
+        _add_primitive(losses, gltf, primitive)
+    for index in _used(primitives, "material"):
+        _add_material(losses, gltf, gltf.item("materials", index))
+    _add_cameras(losses, gltf, shown)
+    _add_animations(losses, gltf, shown)
+    return losses
 
 
 def _used(documents: Iterable[dict[str, Any]], key: str) -> list[int]:
     """The places that `documents` name by `key`, each once."""
     return list(dict.fromkeys(document[key] for document in documents if key in document))
-
-
-def _of_extensions(gltf: Gltf) -> Iterator[str]:
-    named = {*gltf.document.get("extensionsUsed", []), *_extensions(gltf.document)}
-    unknown = sorted(named - READ - INVISIBLE - WITH_FALLBACK)
-    if unknown:
-        yield f"extensions that are not read: {', '.join(unknown)}"
 
 
 def _extensions(document: dict[str, Any]) -> Iterator[str]:
@@ -66,68 +65,51 @@ def _extensions(document: dict[str, Any]) -> Iterator[str]:
             waiting += value
 
 
-def _of_scenes(gltf: Gltf, shown: set[int]) -> Iterator[str]:
-    scenes = len(gltf.document.get("scenes", []))
-    if scenes > 1:
-        yield f"scenes[{gltf.document.get('scene', 0)}] of {scenes} is shown"
-    left = [
-        n
-        for n, node in enumerate(gltf.document.get("nodes", []))
-        if n not in shown and {"mesh", "camera"} & node.keys()
-    ]
-    if left:
-        yield f"nodes that are not in the scene shown: {len(left)} with a mesh or camera"
+def _called(kind: str, index: int, document: dict[str, Any]) -> str:
+    """The name of a thing, or its place in the file where it has none."""
+    return quoted(name) if (name := name_of(document)) else f"{kind}[{index}]"
 
 
-def _of_primitives(gltf: Gltf, primitives: list[dict[str, Any]]) -> Iterator[str]:
-    kinds = Counter(
-        MODES[mode_of(p)] if "POSITION" in p["attributes"] else "no POSITION" for p in primitives if not is_shown(p)
-    )
-    if kinds:
-        yield f"primitives that are not shown: {_counted(kinds)}"
-    shown = [p for p in primitives if is_shown(p)]
-    rests = Counter(MODES[mode_of(p)] for p in shown if _rest(gltf, p))
-    if rests:
-        yield f"primitives that end in corners which make no whole triangle: {_counted(rests)}"
-    morphed = sum("targets" in p for p in shown)
-    if morphed:
-        yield f"morph targets are not read: {morphed} primitives are shown as they are stored"
-    bare = Counter(c.attribute for p in shown if (c := _wanted(gltf, p)) and c.attribute not in p["attributes"])
-    if bare:
-        yield f"primitives without the coordinates of their texture, which show one texel of it: {_counted(bare)}"
-    cut = sum(_has_opacity(gltf, p) for p in shown)
-    if cut:
-        yield f"the opacity of vertex colours is not read: {cut} primitives"
+def _add_scenes(losses: Losses, gltf: Gltf, shown: set[int]) -> None:
+    for index, scene in enumerate(gltf.document.get("scenes", [])):
+        if index != gltf.document.get("scene", 0):
+            losses.add("scenes that are not shown", _called("scenes", index, scene))
+    for index, node in enumerate(gltf.document.get("nodes", [])):
+        if index not in shown and ({"mesh", "camera"} & node.keys() or LIGHTS in node.get("extensions", {})):
+            losses.add("nodes that are not in the scene shown", _called("nodes", index, node))
 
 
-def _rest(gltf: Gltf, primitive: dict[str, Any]) -> bool:
-    """Whether there are corners left over."""
-    corners = gltf.item("accessors", primitive.get("indices", primitive["attributes"]["POSITION"]))["count"]
-    return bool(corners % 3 if mode_of(primitive) == TRIANGLES else corners < 3)
+def _add_primitive(losses: Losses, gltf: Gltf, primitive: dict[str, Any]) -> None:
+    mode, attributes = mode_of(primitive), primitive["attributes"]
+    if not is_shown(primitive):
+        losses.add(
+            "primitives that are not shown", MODES[mode] if "POSITION" in attributes else "those without POSITION"
+        )
+        return
+    corners = gltf.item("accessors", primitive.get("indices", attributes["POSITION"]))["count"]
+    if corners % 3 if mode == TRIANGLES else corners < 3:
+        losses.add("primitives that end in corners which make no whole triangle", MODES[mode])
+    if "targets" in primitive:
+        losses.add("meshes that are shown as they are stored, without", "morph targets")
+    if "material" in primitive:
+        _add_mismatches(losses, gltf, attributes, gltf.item("materials", primitive["material"]))
 
 
-def _wanted(gltf: Gltf, primitive: dict[str, Any]) -> Coordinates | None:
-    """The texture coordinates that a primitive's material asks for, if any."""
-    material = gltf.item("materials", primitive["material"]) if "material" in primitive else {}
+def _add_mismatches(losses: Losses, gltf: Gltf, attributes: dict[str, int], material: dict[str, Any]) -> None:
+    """What a material asks of a mesh that does not have it, and the other way round."""
     texture = base_texture(material) or material.get("emissiveTexture")
-    return Coordinates.of(texture) if texture else None
+    if texture and (wanted := Coordinates.of(texture).attribute) not in attributes:
+        losses.add("primitives without the coordinates of their texture, which show one texel of it", wanted)
+    coloured = "COLOR_0" in attributes and gltf.item("accessors", attributes["COLOR_0"])["type"] == "VEC4"
+    if coloured and material.get("alphaMode", "OPAQUE") != "OPAQUE":
+        losses.add("attributes that are read without their opacity", "COLOR_0")
 
 
-def _has_opacity(gltf: Gltf, primitive: dict[str, Any]) -> bool:
-    """Whether a primitive's corners have an opacity, on a material for which that matters."""
-    if "material" not in primitive or "COLOR_0" not in primitive["attributes"]:
-        return False
-    mode = gltf.item("materials", primitive["material"]).get("alphaMode", "OPAQUE")
-    return bool(mode != "OPAQUE" and gltf.item("accessors", primitive["attributes"]["COLOR_0"])["type"] == "VEC4")
-
-
-def _of_materials(gltf: Gltf, materials: list[dict[str, Any]]) -> Iterator[str]:
-    unread = Counter(name for material in materials for name in _unread(material))
-    if unread:
-        yield f"parts of materials that are not read: {_counted(unread)}"
-    changed = Counter(what for material in materials for what in _changed(gltf, material))
-    if changed:
-        yield f"parts of materials that are shown otherwise: {_counted(changed)}"
+def _add_material(losses: Losses, gltf: Gltf, material: dict[str, Any]) -> None:
+    for name in _unread(material):
+        losses.add("parts of materials that are not read", name)
+    for what in _changed(gltf, material):
+        losses.add("parts of materials that are shown otherwise", what)
 
 
 def _unread(material: dict[str, Any]) -> Iterator[str]:
@@ -138,8 +120,7 @@ def _unread(material: dict[str, Any]) -> Iterator[str]:
 
 def _changed(gltf: Gltf, material: dict[str, Any]) -> Iterator[str]:
     base, emissive = base_texture(material), material.get("emissiveTexture")
-    rough = material.get("pbrMetallicRoughness", {}).get("metallicRoughnessTexture")
-    if rough:
+    if "metallicRoughnessTexture" in material.get("pbrMetallicRoughness", {}):
         yield "metallicRoughnessTexture (its mean counts)"
     if base and emissive and Coordinates.of(base) != Coordinates.of(emissive):
         yield "emissiveTexture (it lies where the base colour's does)"
@@ -162,27 +143,26 @@ def _sampler(gltf: Gltf, texture: dict[str, Any]) -> Iterator[dict[str, Any]]:
         yield gltf.item("samplers", document["sampler"])
 
 
-def _of_cameras(gltf: Gltf, nodes: list[dict[str, Any]]) -> Iterator[str]:
-    cameras = [gltf.item("cameras", node["camera"]) for node in nodes if "camera" in node]
-    perspective = sum("perspective" in camera for camera in cameras)
-    if perspective < len(cameras):
-        yield f"cameras that are not perspective are not read: {len(cameras) - perspective}; the view is not theirs"
-    if perspective > 1:
-        yield f"cameras: the first perspective one of {perspective} is used"
+def _add_cameras(losses: Losses, gltf: Gltf, shown: list[dict[str, Any]]) -> None:
+    taken = False
+    for index in (node["camera"] for node in shown if "camera" in node):
+        camera = gltf.item("cameras", index)
+        name = _called("cameras", index, camera)
+        if "perspective" not in camera:
+            losses.add("orthographic cameras, which are not read: the view is not theirs", name)
+        elif taken:
+            losses.add("cameras that are not used, as another one comes first", name)
+        else:
+            taken = True
 
 
-def _of_animations(gltf: Gltf, shown: list[dict[str, Any]]) -> Iterator[str]:
+def _add_animations(losses: Losses, gltf: Gltf, shown: list[dict[str, Any]]) -> None:
     animations = gltf.document.get("animations", [])
-    if len(animations) > 1:
-        yield f"animations: the first of {len(animations)} is played"
-    paths = Counter(channel["target"]["path"] for animation in animations[:1] for channel in animation["channels"])
-    unread = Counter({path: count for path, count in paths.items() if path not in REST})
-    if unread:
-        yield f"channels of the animation that are not read: {_counted(unread)}"
-    skinned = sum("skin" in node for node in shown)
-    if skinned:
-        yield f"skins are not read: {skinned} meshes are shown as they are stored"
-
-
-def _counted(counts: Counter[str]) -> str:
-    return ", ".join(f"{count} of {name}" for name, count in sorted(counts.items()))
+    for index, animation in enumerate(animations[1:], 1):
+        name = _called("animations", index, animation)
+        losses.add("animations that are not played, as another one comes first", name)
+    for path in (channel["target"]["path"] for animation in animations[:1] for channel in animation["channels"]):
+        if path not in REST:
+            losses.add("channels of the animation that are not read", path)
+    for _ in (node for node in shown if "skin" in node):
+        losses.add("meshes that are shown as they are stored, without", "skins")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,7 +14,7 @@ from svgf_cl_tracer.vectors import Float64
 from .file import Gltf
 from .instancing import places
 from .lights import read_camera, read_lights
-from .losses import losses
+from .losses import losses_of
 from .materials import Materials
 from .nodes import Nodes
 from .primitives import Primitive, is_shown, read_primitive
@@ -43,8 +42,7 @@ def load_gltf(path: Path, to_world: Float64) -> Model:
     gltf = Gltf.read(path)
     nodes = Nodes(gltf, to_world)
     model = Model(list(_objects(gltf, nodes)), list(read_lights(gltf, nodes)), read_camera(gltf, nodes))
-    for loss in losses(gltf, nodes):
-        warnings.warn(f"{path}: {loss}", stacklevel=3)
+    losses_of(gltf, nodes).warn(path)
     return model
 
 

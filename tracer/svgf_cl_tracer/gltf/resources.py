@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import base64
+import binascii
 from pathlib import Path
 from urllib.parse import unquote, unquote_to_bytes
 
 from svgf_cl.errors import shown
 from svgf_cl_tracer.errors import SceneError
+from svgf_cl_tracer.folder import found_inside
 
 
 def resource(folder: Path, uri: str) -> bytes:
@@ -16,27 +18,28 @@ def resource(folder: Path, uri: str) -> bytes:
     Raises
     ------
     SceneError
-        It leads out of the folder, or to nothing.
+        It leads out of the folder, or to nothing, or its data is damaged.
     """
     scheme, _, rest = uri.partition(":")
     if scheme.lower() == "data":
         return _embedded(rest)
     # The name as it stands comes second: many exporters write spaces, umlauts or % as they are.
-    for name in dict.fromkeys((unquote(uri), uri)):
-        try:
-            path = (folder / name).resolve()
-            found = path.is_file()
-        except (OSError, RuntimeError, ValueError) as error:  # a name too long or with a zero in it, a loop of links
-            raise SceneError(f"expected the name of a file, found {shown(uri)} ({error})") from error
-        if not path.is_relative_to(folder.resolve()):
-            raise SceneError(f"expected a file in the model's folder or below, found {shown(uri)}")
-        if found:
-            return path.read_bytes()
-    raise SceneError(f"expected a file beside the model, found none called {shown(unquote(uri))}")
+    path = found_inside(folder, unquote(uri), folder) or found_inside(folder, uri, folder)
+    if path is None:
+        raise SceneError(f"expected a file in the model's folder or below, found none called {shown(unquote(uri))}")
+    return path.read_bytes()
 
 
 def _embedded(data: str) -> bytes:
     """What follows ``data:`` (RFC 2397), with any media type; padding may be missing."""
-    head, _, body = data.partition(",")
+    head, comma, body = data.partition(",")
     raw = unquote_to_bytes(body)
-    return base64.b64decode(raw + b"==") if head.lower().strip().endswith(";base64") else raw
+    if not comma:
+        raise SceneError(f"expected data behind a comma, found {shown('data:' + data)}")
+    if not head.lower().strip().endswith(";base64"):
+        return raw
+    digits = b"".join(raw.split()).rstrip(b"=")
+    try:
+        return base64.b64decode(digits + b"=" * (-len(digits) % 4), validate=True)
+    except binascii.Error as error:
+        raise SceneError(f"expected data in base64, found something else ({error}); export the model anew") from error

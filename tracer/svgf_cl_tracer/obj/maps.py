@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from svgf_cl.errors import shown
+from svgf_cl_tracer.folder import found_inside
 from svgf_cl_tracer.images import Images
+from svgf_cl_tracer.losses import Losses
 from svgf_cl_tracer.textures import Image
 
-from .folder import found_inside
 from .library import Definition, Map
-from .losses import Losses
 from .text import is_number
 
 # Images that lie on the surface texel by texel; of others the mean counts. The place of the first is that of all.

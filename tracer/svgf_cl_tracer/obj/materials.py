@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from svgf_cl.errors import shown
 from svgf_cl_tracer.errors import SceneError
+from svgf_cl_tracer.losses import Losses
 from svgf_cl_tracer.materials import Colour, Material
 from svgf_cl_tracer.textures import Image
 
 from .library import Definition, Statement
-from .losses import Losses
 from .maps import Maps
 from .text import clean, is_number, uncommented
 

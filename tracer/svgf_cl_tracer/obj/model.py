@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -11,14 +10,14 @@ import numpy as np
 
 from svgf_cl.errors import shown
 from svgf_cl_tracer.errors import SceneError
+from svgf_cl_tracer.folder import found_inside
+from svgf_cl_tracer.losses import Losses
 from svgf_cl_tracer.meshes import instance
 from svgf_cl_tracer.model import Model, Object
 from svgf_cl_tracer.motion import Motion
 from svgf_cl_tracer.vectors import Float64
 
-from .folder import found_inside
 from .library import Definition, read_library
-from .losses import Losses
 from .materials import Materials
 from .surface import Surface
 from .text import NONE, Indices, Lines, by_keyword, read_text, uncommented
@@ -64,8 +63,7 @@ def load_obj(path: Path, to_world: Float64) -> Model:
         if material is not None:
             mesh = replace(mesh, uv=materials.placed(known, mesh.uv))
             objects.append(Object(instance(mesh, Motion([to_world]), material), (path.name, name), known))
-    for loss in losses.lines():
-        warnings.warn(f"{path}: {loss}", stacklevel=2)
+    losses.warn(path)
     return Model(objects)
 
 

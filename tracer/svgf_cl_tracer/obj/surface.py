@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from svgf_cl_tracer.geometry import unit
+from svgf_cl_tracer.losses import Losses
 from svgf_cl_tracer.meshes import Mesh
 from svgf_cl_tracer.textures import srgb_to_linear
 from svgf_cl_tracer.vectors import Float64
 
 from .faces import ABSENT, Faces
-from .losses import Losses
 from .polygons import triangulate
 from .text import NONE, Indices, Lines
 

@@ -1,9 +1,10 @@
-"""What of a file is not shown, or not as the file has it."""
+"""What of a model's file is not shown, or not as the file has it."""
 
 from __future__ import annotations
 
+import warnings
 from collections import Counter, defaultdict
-from collections.abc import Iterator
+from pathlib import Path
 
 # Names in one line; a file may hold thousands that are not there.
 MOST_NAMES = 8
@@ -19,9 +20,9 @@ class Losses:
         """Note that `what` was lost in a way that `kind` describes."""
         self._kinds[kind][what] += times
 
-    def lines(self) -> Iterator[str]:
-        """A line a kind, with what was lost and how often."""
+    def warn(self, path: Path) -> None:
+        """Warn about the file at `path`: a warning a kind, with what was lost and how often."""
         for kind, counts in self._kinds.items():
             names = [what if times == 1 else f"{what} ({times} times)" for what, times in counts.items()]
             more = [f"{len(names) - MOST_NAMES} more"] if len(names) > MOST_NAMES else []
-            yield f"{kind}: {', '.join(names[:MOST_NAMES] + more)}"
+            warnings.warn(f"{path}: {kind}: {', '.join(names[:MOST_NAMES] + more)}", stacklevel=3)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from svgf_cl_tracer.obj.folder import found_inside
+from svgf_cl_tracer.folder import found_inside
 
 
 @pytest.fixture
