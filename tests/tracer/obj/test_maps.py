@@ -48,7 +48,6 @@ def test_holes_of_a_colour_alone_are_named(folder: Path) -> None:
 
 
 def test_materials_share_what_is_made_of_the_same_images(folder: Path) -> None:
-
     library = "".join(f"newmtl {name}\nmap_Kd green.png\nmap_d mask.png\n" for name in "ab")
     model, _ = read(folder, f"mtllib a.mtl\n{SQUARE}usemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 2/2 3/3\n", library)
     first, second = (item.instance.material.base_texture for item in model.objects)
@@ -75,6 +74,14 @@ def test_images_are_scaled_and_shifted(folder: Path) -> None:
 def test_options_that_would_show_are_named(folder: Path, statements: str, expected: str | None) -> None:
     lost = material_of(folder, statements)[1]
     assert lost == ([f"options of images that are not read: {expected}"] if expected else [])
+
+
+@pytest.mark.parametrize("name", ["green.png # a comment", "green.png# not green", "green #1.png"])
+def test_a_comment_may_stand_behind_a_name_that_may_hold_its_sign(folder: Path, name: str) -> None:
+    (folder / "green #1.png").write_bytes(png(GREEN))
+    material, lost = material_of(folder, f"map_Kd {name}")
+    np.testing.assert_array_equal(material.base_texture, GREEN)
+    assert lost == []
 
 
 def test_an_image_that_is_not_there_is_named(folder: Path) -> None:

@@ -14,7 +14,7 @@ from svgf_cl_tracer.losses import Losses
 from svgf_cl_tracer.textures import Image
 
 from .library import Definition, Map
-from .text import is_number
+from .text import is_number, uncommented
 
 # Images that lie on the surface texel by texel; of others the mean counts. The place of the first is that of all.
 PLACED = ("map_kd", "map_ke", "map_d")
@@ -55,7 +55,8 @@ class Maps:
         if keyword not in definition.maps:
             return None
         named = definition.maps[keyword]
-        path = found_inside(self._root, named.name, definition.library.parent)
+        names = (named.name, uncommented(named.name))  # a name may hold a #; or a comment stands behind it
+        path = next(filter(None, (found_inside(self._root, name, definition.library.parent) for name in names)), None)
         if path is None:
             self._losses.add("images that are not in its folder or below, shown without", shown(named.name))
             return None
