@@ -63,6 +63,20 @@ def test_corners_left_over_are_named(mode: int, counts: tuple[int, ...], tmp_pat
         assert lost(tmp_path, buffers, meshes=[{"primitives": [part]}]) == ([words] if count in counts else [])
 
 
+@pytest.mark.parametrize(
+    ("offset", "size", "named"), [(0, 1, False), (1e4, 1, False), (1e5, 1, True), (-1e7, 1, True), (1e7, 1e4, False)]
+)
+def test_vertices_far_from_0_that_the_file_rounds_are_named(
+    offset: float, size: float, named: bool, tmp_path: Path
+) -> None:
+    buffers, corners = Buffers(), CORNERS * size + (offset, 0, 0)
+    box = {"min": corners.min(0).tolist(), "max": corners.max(0).tolist()}
+    part = {"attributes": {"POSITION": buffers.add(corners, **box)}, "mode": 6}
+    found = lost(tmp_path, buffers, meshes=[{"primitives": [part]}])
+    line = "vertices far from 0, which the file has rounded: a node's translation holds more digits: triangle fans"
+    assert found == ([line] if named else [])
+
+
 def test_morph_targets_and_skins_are_named(tmp_path: Path) -> None:
     buffers = Buffers()
     square = buffers.square() | {"targets": [{"POSITION": buffers.add(CORNERS)}]}

@@ -13,7 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from svgf_cl.errors import shown
 from svgf_cl_tracer.camera import Camera, CarriedCamera, vector
+from svgf_cl_tracer.errors import SceneError
 from svgf_cl_tracer.lights import PointLight, Sun
 from svgf_cl_tracer.meshes import colour
 from svgf_cl_tracer.model import Eye, Light
@@ -35,11 +37,14 @@ def read_lights(gltf: Gltf, nodes: Nodes) -> Iterator[Light]:
 
 def _light(document: dict[str, Any], motion: Motion) -> PointLight | Sun:
     strength = colour(np.array(document.get("color", (1.0, 1.0, 1.0))) * document.get("intensity", 1.0))
-    if document["type"] == "directional":
+    kind = document.get("type")
+    if kind not in ("directional", "point", "spot"):
+        raise SceneError(f"lights: expected the type directional, point or spot, found {shown(kind)}")
+    if kind == "directional":
         sun = Sun((0.0, 0.0, 1.0), strength, angular_radius=0.0, motion=motion)
         return sun if motion.changes else replace(sun, direction_to_light=vector(sun.direction_at(0.0)), motion=None)
     inner, outer = 180.0, 180.0
-    if document["type"] == "spot":
+    if kind == "spot":
         cone = document.get("spot", {})
         inner = math.degrees(cone.get("innerConeAngle", 0.0))
         outer = math.degrees(cone.get("outerConeAngle", math.pi / 4.0))

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+import numpy as np
+
 from svgf_cl.errors import shown as quoted
 from svgf_cl_tracer.losses import Losses
 
@@ -19,7 +21,10 @@ from .textures import Coordinates
 UNREAD_TEXTURES = ("normalTexture", "occlusionTexture")
 UNREAD_EXTENSION_TEXTURES = ("transmissionTexture", "specularTexture", "specularColorTexture")
 
-REPEAT, NEAREST = 10497, 9728
+FLOAT, REPEAT, NEAREST = 5126, 10497, 9728
+
+# Steps of single precision across a mesh: with fewer its shape is seen to be rounded.
+FINE = 1000
 
 
 def losses_of(gltf: Gltf, nodes: Nodes) -> Losses:
@@ -89,10 +94,21 @@ def _add_primitive(losses: Losses, gltf: Gltf, primitive: dict[str, Any]) -> Non
     corners = gltf.item("accessors", primitive.get("indices", attributes["POSITION"]))["count"]
     if corners % 3 if mode == TRIANGLES else corners < 3:
         losses.add("primitives that end in corners which make no whole triangle", MODES[mode])
+    if _is_coarse(gltf.item("accessors", attributes["POSITION"])):
+        losses.add(
+            "vertices far from 0, which the file has rounded: a node's translation holds more digits", MODES[mode]
+        )
     if "targets" in primitive:
         losses.add("meshes that are shown as they are stored, without", "morph targets")
     if "material" in primitive:
         _add_mismatches(losses, gltf, attributes, gltf.item("materials", primitive["material"]))
+
+
+def _is_coarse(positions: dict[str, Any]) -> bool:
+    """Whether single precision has few steps across what has these positions, as it is far from 0."""
+    least, most = (np.array(positions.get(name, 0.0), np.float64) for name in ("min", "max"))
+    step = np.spacing(np.float32(np.abs([least, most]).max()))
+    return bool(positions["componentType"] == FLOAT and step * FINE > np.max(most - least) > 0.0)
 
 
 def _add_mismatches(losses: Losses, gltf: Gltf, attributes: dict[str, int], material: dict[str, Any]) -> None:
