@@ -52,6 +52,29 @@ def test_project_finds_where_a_ray_went_through(
     np.testing.assert_allclose(seen(camera.lens(SHAPE), point), (x, y, depth), rtol=1e-9, atol=1e-7)
 
 
+@settings(deadline=None)
+@given(st.floats(-30, 400), st.floats(-30, 300), st.floats(0.1, 100), st.floats(0.1, 100))
+def test_rays_of_an_orthographic_camera_are_parallel(x: float, y: float, depth: float, view_height: float) -> None:
+    camera = Camera((1, 2, 3), (7, 8, 9), (0.1, 1, 0.2), view_height=view_height)
+    lens = camera.lens(SHAPE, 0.5)
+    origin, way = ray_through(lens, x, y, 0.0, 0.0)
+    np.testing.assert_allclose(way, camera.basis()[2])
+    np.testing.assert_allclose(seen(lens, np.add(origin, depth * np.array(way))), (x, y, depth), rtol=1e-9, atol=1e-7)
+    above, _ = ray_through(lens, x, y - SHAPE[0], 0.0, 0.0)
+    np.testing.assert_allclose(np.subtract(above, origin), camera.basis()[1] * view_height, atol=1e-9)
+
+
+@pytest.mark.parametrize("wrong", [{"view_height": -1.0}, {"view_height": math.nan}, {"view_height": 1, "aperture": 1}])
+def test_orthographic_cameras_have_a_height_and_no_lens(wrong: dict[str, float]) -> None:
+    with pytest.raises(SceneError, match="expected a view_height >= 0, and beside one above 0 no aperture"):
+        Camera((0, 0, 0), (0, 0, -1), **wrong)
+
+
+def test_a_path_is_of_cameras_of_one_kind() -> None:
+    with pytest.raises(SceneError, match="expected cameras in perspective or orthographic ones, got both"):
+        CameraPath.through([AHEAD, Camera((0, 0, 0), (0, 0, -1), view_height=1.0)])
+
+
 @pytest.mark.parametrize("behind", [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0)])
 def test_points_behind_the_camera_land_outside(behind: tuple[float, float, float]) -> None:
     assert project(AHEAD.lens((9, 9)), behind)[:2] == (OUTSIDE, OUTSIDE)
@@ -135,6 +158,8 @@ def test_lenses_and_shutters_out_of_range_are_refused(wrong: dict[str, float]) -
 def test_a_path_passes_through_its_keyframes() -> None:
     keys = [Camera((i * i, 1, 5), (0, i, 0), (0.1 * i, 1, 0), 40 + i, 0.1 * i, 0.2 * i) for i in range(4)]
     path = CameraPath.through(keys)
+    tall = CameraPath.through([Camera((i, 1, 5), (0, i, 0), view_height=i * i + 1) for i in range(4)])
+    assert [tall.at(index / 3).view_height for index in range(4)] == pytest.approx([1, 2, 5, 10])
     for index, key in enumerate(keys):
         found = path.at(index / 3)
         for name in ("position", "look_at", "up", "fov_y", "aperture", "shutter"):

@@ -24,7 +24,7 @@ OUTSIDE = 1e6
 
 @dataclass(frozen=True)
 class Camera:
-    """A pinhole camera, or one with a thin lens.
+    """A pinhole camera, one with a thin lens, or an orthographic one.
 
     Parameters
     ----------
@@ -39,11 +39,14 @@ class Camera:
     shutter : float
         How long the shutter stays open, as a share of the time from one frame to the next, 0..1; at 0 moving things
         are sharp.
+    view_height : float
+        Of an orthographic camera, whose rays are parallel: how much of the scene the image's height shows, in scene
+        units, >= 0. At 0 the camera is in perspective, and `fov_y` counts.
 
     Raises
     ------
     SceneError
-        The view direction, `up` or `fov_y` span no image.
+        The view direction, `up` or `fov_y` span no image, or an orthographic camera has a lens.
     """
 
     position: Vector
@@ -52,6 +55,7 @@ class Camera:
     fov_y: float = 45.0
     aperture: float = 0.0
     shutter: float = 0.0
+    view_height: float = 0.0
 
     def __post_init__(self) -> None:
         numbers = (*self.position, *self.look_at, *self.up, self.fov_y)
@@ -62,6 +66,8 @@ class Camera:
             raise SceneError(f"camera: expected a point to look at that is not along the up direction, got {self}")
         if not (0.0 <= self.aperture < math.inf and 0.0 <= self.shutter <= 1.0):
             raise SceneError(f"camera: expected an aperture >= 0 and a shutter in 0..1, got {self}")
+        if not 0.0 <= self.view_height < math.inf or self.view_height * self.aperture > 0.0:
+            raise SceneError(f"camera: expected a view_height >= 0, and beside one above 0 no aperture, got {self}")
 
     @classmethod
     def parse(cls, text: str) -> Camera:
@@ -101,16 +107,18 @@ class Camera:
         height, width = shape
         right, up, forward = (vector(axis) for axis in self.basis())
         focus = math.dist(self.position, self.look_at)
-        scale = height / (2.0 * math.tan(math.radians(self.fov_y) / 2.0))
+        scale = height / (self.view_height or 2.0 * math.tan(math.radians(self.fov_y) / 2.0))
         middle = (width - 1) / 2.0, (height - 1) / 2.0
         start = max(clearance - self.aperture, 0.0)
-        return Lens(vector(self.position), right, up, forward, scale, *middle, self.aperture / 2.0, focus, start)
+        eye, radius, parallel = vector(self.position), self.aperture / 2.0, self.view_height > 0.0
+        return Lens(eye, right, up, forward, scale, *middle, radius, focus, start, parallel)
 
 
 class Lens(NamedTuple):
     """A camera and its image: axes, pixels in a unit at distance 1, the image's middle, the lens' radius and focus.
 
-    Rays start at the distance `start`: single precision gets the less of their way wrong the shorter it is.
+    Rays start at the distance `start`: single precision gets the less of their way wrong the shorter it is. Those of an
+    orthographic camera are `parallel`, and start in its plane.
     """
 
     position: Vec3
@@ -123,6 +131,7 @@ class Lens(NamedTuple):
     radius: float
     focus: float
     start: float
+    parallel: bool
 
 
 @compiled
@@ -132,7 +141,10 @@ def ray_through(lens: Lens, x: float, y: float, u: float, v: float) -> tuple[Vec
     `u` and `v`, uniform in [0, 1), pick the point on the lens.
     """
     across, above = (x - lens.middle_x) / lens.scale, (lens.middle_y - y) / lens.scale
-    way = add(add(scale(lens.right, across), scale(lens.up, above)), lens.forward)
+    aside = add(scale(lens.right, across), scale(lens.up, above))
+    if lens.parallel:
+        return add(lens.position, aside), lens.forward
+    way = add(aside, lens.forward)
     if lens.radius == 0.0:
         direction = normalise(way)
         return add(lens.position, scale(direction, lens.start)), direction
@@ -151,8 +163,9 @@ def project(lens: Lens, offset: Vec3) -> Vec3:
     depth = dot(offset, lens.forward)
     if depth <= 0.0:
         return OUTSIDE, OUTSIDE, depth
-    x = dot(offset, lens.right) / depth * lens.scale + lens.middle_x
-    y = lens.middle_y - dot(offset, lens.up) / depth * lens.scale
+    pixels = lens.scale if lens.parallel else lens.scale / depth
+    x = dot(offset, lens.right) * pixels + lens.middle_x
+    y = lens.middle_y - dot(offset, lens.up) * pixels
     return x, y, depth
 
 
@@ -173,6 +186,8 @@ class CameraPath:
     def __post_init__(self) -> None:
         if not self.keyframes:
             raise SceneError("camera path: expected at least one camera, got none")
+        if len({camera.view_height > 0.0 for camera in self.keyframes}) == 2:
+            raise SceneError("camera path: expected cameras in perspective or orthographic ones, got both")
 
     @classmethod
     def static(cls, camera: Camera) -> CameraPath:
@@ -188,7 +203,9 @@ class CameraPath:
         """The camera at time `t`, 0 (first keyframe) to 1 (last)."""
         if len(self.keyframes) == 1:
             return self.keyframes[0]
-        keys = np.array([(*k.position, *k.look_at, *k.up, k.fov_y, k.aperture, k.shutter) for k in self.keyframes])
+        keys = np.array(
+            [(*k.position, *k.look_at, *k.up, k.fov_y, k.aperture, k.shutter, k.view_height) for k in self.keyframes]
+        )
         segment, s = divmod(min(max(t, 0.0), 1.0) * (len(keys) - 1), 1.0)
         if segment == len(keys) - 1:
             segment, s = segment - 1, 1.0
@@ -196,10 +213,9 @@ class CameraPath:
         padded = np.concatenate([[2 * keys[0] - keys[1]], keys, [2 * keys[-1] - keys[-2]]])
         values = _catmull_rom(padded[int(segment) : int(segment) + 4], s)
         # The spline may swing a little beyond its keyframes.
-        aperture, shutter = max(float(values[10]), 0.0), min(max(float(values[11]), 0.0), 1.0)
-        return Camera(
-            vector(values[0:3]), vector(values[3:6]), vector(values[6:9]), float(values[9]), aperture, shutter
-        )
+        fov_y, aperture, shutter, view_height = values[9:].tolist()
+        lens = fov_y, max(aperture, 0.0), min(max(shutter, 0.0), 1.0), max(view_height, 0.0)
+        return Camera(vector(values[0:3]), vector(values[3:6]), vector(values[6:9]), *lens)
 
     def at_frame(self, number: float, frames: int) -> Camera:
         """The camera of frame `number`, from 0, in a sequence of so many that covers the whole path."""

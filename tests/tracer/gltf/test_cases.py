@@ -48,9 +48,12 @@ def test_both_instances_are_shown() -> None:
     assert set(np.unique(front("gpu_instancing.gltf").id)) == {0, 1, 2}
 
 
-def test_a_camera_that_is_not_read_is_named() -> None:
-    with pytest.warns(UserWarning, match=r"orthographic\.gltf: orthographic cameras, which are not read"):
-        load_scene(CASES / "orthographic.gltf", (1.0, 1.0, 1.0))
+def test_the_view_of_an_orthographic_camera() -> None:
+    """The plate is 4 wide, the view 2 high: at 16:4 the plate covers half of it. In perspective it would cover more."""
+    scene = load_scene(CASES / "orthographic.gltf", (1.0, 1.0, 1.0))
+    frame = render_frame(Shot(scene, (16, 64)), 0, jitter=False)
+    np.testing.assert_array_equal(frame.id > 0, np.broadcast_to(np.abs(np.arange(64) - 31.5) < 16, (16, 64)))
+    np.testing.assert_allclose(frame.depth[:, 16:48], 5.0, rtol=1e-6)
 
 
 @pytest.mark.parametrize("bits", [8, 16])

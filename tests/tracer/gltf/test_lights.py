@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from svgf_cl_tracer import SceneError
 from svgf_cl_tracer.gltf.file import Gltf
 from svgf_cl_tracer.gltf.lights import read_camera, read_lights
 from svgf_cl_tracer.gltf.nodes import Nodes
@@ -78,21 +79,29 @@ def test_a_directional_light_comes_from_plus_z_without_extent(tmp_path: Path) ->
     assert (sun.irradiance, sun.angular_radius) == ((5, 5, 5), 0)
 
 
-def test_a_camera_looks_along_minus_z_from_its_node(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("number", "seen"), [(0, {"view_height": 4}), (1, {"view_height": 0, "fov_y": np.degrees(0.5)})]
+)
+def test_a_camera_looks_along_minus_z_from_its_node(number: int, seen: dict[str, float], tmp_path: Path) -> None:
     cameras = [
-        {"type": "orthographic", "orthographic": {}},
+        {"type": "orthographic", "orthographic": {"xmag": 3, "ymag": 2, "znear": 0.1, "zfar": 9}},
         {"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}},
     ]
     nodes = [
-        {"camera": 0},
+        {},
         {"children": [2], "translation": [1, 0, 0]},
-        {"camera": 1, "translation": [0, 2, 3], "rotation": UP},
+        {"camera": number, "translation": [0, 2, 3], "rotation": UP},
     ]
     gltf = Gltf.read(write_gltf(tmp_path / "a.gltf", nodes=nodes, cameras=cameras))
     camera = read_camera(gltf, Nodes(gltf, np.eye(4))).path.at(0.0)
     np.testing.assert_allclose(camera.position, (1, 2, 3))
     np.testing.assert_allclose(camera.basis(), [(1, 0, 0), (0, 0, 1), (0, 1, 0)], atol=1e-9)
-    assert camera.fov_y == pytest.approx(np.degrees(0.5))
+    assert {name: getattr(camera, name) for name in seen} == pytest.approx(seen)
+
+
+def test_a_light_of_another_type_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match="lights: expected the type directional, point or spot, found 'ambient'"):
+        read(tmp_path, {"type": "ambient"}, {})
 
 
 def test_a_file_without_a_camera_has_none(tmp_path: Path) -> None:

@@ -163,8 +163,8 @@ ORTHOGRAPHIC = {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1}}
     ("cameras", "expected"),
     [
         ([PERSPECTIVE], []),
-        ([ORTHOGRAPHIC], ["orthographic cameras, which are not read: the view is not theirs: cameras[0]"]),
-        ([PERSPECTIVE, PERSPECTIVE], ["cameras that are not used, as another one comes first: cameras[1]"]),
+        ([ORTHOGRAPHIC], []),
+        ([PERSPECTIVE, ORTHOGRAPHIC], ["cameras that are not used, as another one comes first: cameras[1]"]),
     ],
 )
 def test_cameras_that_are_not_used_are_named(

@@ -40,6 +40,7 @@ LENS = Camera((0, 0.4, 2.5), (0, 0, 0), fov_y=35.0, aperture=0.02, shutter=0.4)
 CAMERAS = {
     "path": CameraPath.through([LENS, Camera((0.5, 0.6, 2.2), (0, 0.1, 0), (0.1, 1, 0), 40.0, 0.01, 0.4)]),
     "carried": CarriedCamera(LENS, Motion([TURN])),
+    "orthographic": CarriedCamera(Camera((0, 0.4, 2.5), (0, 0, 0), view_height=2.0), Motion([TURN])),
 }
 LIGHTS = {
     "sky": {"sky": SKY},
@@ -78,9 +79,12 @@ def placed(scene: Scene, scale: float, way: Sequence[float]) -> Scene:
     def put(point: Sequence[float] | Floats) -> Floats:
         return np.multiply(point, scale) + np.asarray(way, np.float64)
 
+    def sized(camera: Camera) -> Camera:
+        return replace(camera, aperture=camera.aperture * scale, view_height=camera.view_height * scale)
+
     def put_camera(camera: Camera) -> Camera:
         eye, target = tuple(put(camera.position).tolist()), tuple(put(camera.look_at).tolist())
-        return replace(camera, position=eye, look_at=target, aperture=camera.aperture * scale)
+        return replace(sized(camera), position=eye, look_at=target)
 
     def put_light(light: Sun | PointLight) -> Sun | PointLight:
         if isinstance(light, Sun):
@@ -97,7 +101,7 @@ def placed(scene: Scene, scale: float, way: Sequence[float]) -> Scene:
     ]
     path = scene.camera_path
     if isinstance(path, CarriedCamera):
-        lens = replace(path.camera, aperture=path.camera.aperture * scale)
+        lens = sized(path.camera)
         # Its focus, which sizes do not change, is as far away as what it looks at.
         focus = np.multiply(np.subtract(lens.look_at, lens.position), scale)
         lens = replace(lens, look_at=tuple((lens.position + focus).tolist()))

@@ -57,11 +57,17 @@ def _light(document: dict[str, Any], motion: Motion) -> PointLight | Sun:
 
 
 def read_camera(gltf: Gltf, nodes: Nodes) -> Eye | None:
-    """The first perspective camera among the scene's nodes; None where there is none."""
+    """The first camera among the scene's nodes; None where there is none."""
     for chain in nodes.chains():
         node = nodes.node(chain)
-        lens = gltf.item("cameras", node["camera"]).get("perspective") if "camera" in node else None
-        if lens:
-            camera = Camera((0.0, 0.0, 0.0), (0.0, 0.0, -1.0), fov_y=math.degrees(lens["yfov"]))
+        if "camera" in node:
+            camera = _camera(gltf.item("cameras", node["camera"]))
             return Eye(CarriedCamera(camera, nodes.motion(chain)), nodes.names(chain))
     return None
+
+
+def _camera(document: dict[str, Any]) -> Camera:
+    eye, ahead = (0.0, 0.0, 0.0), (0.0, 0.0, -1.0)
+    if "orthographic" in document:
+        return Camera(eye, ahead, view_height=2.0 * abs(document["orthographic"]["ymag"]))
+    return Camera(eye, ahead, fov_y=math.degrees(document["perspective"]["yfov"]))

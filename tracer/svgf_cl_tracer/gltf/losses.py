@@ -47,7 +47,9 @@ def losses_of(gltf: Gltf, nodes: Nodes) -> Losses:
         _add_primitive(losses, gltf, primitive)
     for index in _used(primitives, "material"):
         _add_material(losses, gltf, gltf.item("materials", index))
-    _add_cameras(losses, gltf, shown)
+    for index in _used(shown, "camera")[1:]:
+        name = _called("cameras", index, gltf.item("cameras", index))
+        losses.add("cameras that are not used, as another one comes first", name)
     _add_animations(losses, gltf, shown)
     return losses
 
@@ -157,19 +159,6 @@ def _sampler(gltf: Gltf, texture: dict[str, Any]) -> Iterator[dict[str, Any]]:
     document = gltf.item("textures", texture["index"])
     if "sampler" in document:
         yield gltf.item("samplers", document["sampler"])
-
-
-def _add_cameras(losses: Losses, gltf: Gltf, shown: list[dict[str, Any]]) -> None:
-    taken = False
-    for index in (node["camera"] for node in shown if "camera" in node):
-        camera = gltf.item("cameras", index)
-        name = _called("cameras", index, camera)
-        if "perspective" not in camera:
-            losses.add("orthographic cameras, which are not read: the view is not theirs", name)
-        elif taken:
-            losses.add("cameras that are not used, as another one comes first", name)
-        else:
-            taken = True
 
 
 def _add_animations(losses: Losses, gltf: Gltf, shown: list[dict[str, Any]]) -> None:
