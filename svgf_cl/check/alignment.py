@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from svgf_cl.check.check import Check
 from svgf_cl.check.finding import Finding, Unknown
-from svgf_cl.check.view import Array, View, shifted
+from svgf_cl.check.view import Array, View, over_channels, shifted
 
 FIELDS = ("depth", "normal", "albedo", "id", "motion")
 # Second differences between neighbours that make an edge: of one over depth and of the fastest motion, relative; of
@@ -47,8 +47,7 @@ def edges(view: View) -> dict[str, Array]:
 def bend(values: Array) -> Array:
     """How far each pixel (h, w) of (h, w, ...) is from the mean of the neighbours on both sides of it, at most."""
     both = [shifted(values, dx, dy) + shifted(values, -dx, -dy) - 2 * values for dx, dy in ((1, 0), (0, 1))]
-    most: Array = np.abs(both).reshape(2, *values.shape[:2], -1).max(axis=(0, -1))
-    return most
+    return over_channels(np.maximum, np.atleast_3d(np.maximum(*map(np.abs, both))))
 
 
 def correlations(first: dict[str, Array], second: dict[str, Array]) -> Array:

@@ -8,12 +8,13 @@ though motion leaves it out: that much is allowed.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from svgf_cl.check.check import Check
 from svgf_cl.check.finding import Finding, Unknown
-from svgf_cl.check.view import Array, View, Whole, sample, shifted
+from svgf_cl.check.view import Array, View, Whole, over_channels, sample, shifted
 from svgf_cl.frame import Shape
 
 SAMPLES = 1500
@@ -81,7 +82,7 @@ def misfits(before: View, now: View) -> Array | None:
     """Whether anything moves; how much features change from pixel to pixel, differ between any two pixels, and differ
     from the frame before: as given, with every cure, and where pieces of the picture may move by themselves.
     """
-    speed = np.abs(now.motion).max(axis=-1)
+    speed = over_channels(np.maximum, np.abs(now.motion))
     fastest = float(np.percentile(speed[now.hit], 99)) if now.hit.any() else 0.0
     pixels = sample(now.hit & (speed >= MOVING * fastest), SAMPLES)
     if len(pixels) < ENOUGH:
@@ -99,6 +100,7 @@ def misfits(before: View, now: View) -> Array | None:
     return np.array([fastest > 0, np.hypot(*gradient.T).sum(axis=0).mean(), between_any(here), *found])
 
 
+@lru_cache(maxsize=2)  # of a frame and the one before it
 def features(view: View) -> Array:
     """What stays on surfaces, (h, w, C): normal, albedo, steps of depth; blurred, so as to be smooth between pixels."""
     log_depth = -np.log(np.where(view.hit, view.nearness, np.max(view.nearness, initial=1e-30)))

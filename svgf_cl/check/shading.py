@@ -17,7 +17,7 @@ import numpy as np
 
 from svgf_cl.check.check import Check
 from svgf_cl.check.finding import Finding, Unknown, percent
-from svgf_cl.check.view import Array, View, Whole, sample
+from svgf_cl.check.view import Array, View, Whole, over_channels, sample
 from svgf_cl.frame import CARRIED
 
 DARK = 0.02  # albedo that is too little to tell
@@ -165,7 +165,7 @@ def shining(view: View) -> Array | None:
     """Pixels that shine; those darker than what they emit; of these, those that are not so once decoded from sRGB."""
     if view.emission is None:
         return None
-    emission, color = (values[view.hit & (view.emission.max(axis=-1) > 0)] for values in (view.emission, view.color))
+    emission, color = (values[view.hit & (over_channels(np.maximum, view.emission) > 0)] for values in (view.emission, view.color))
     if not len(emission):
         return None
     least = emission * (1 - DARKER)
@@ -196,7 +196,7 @@ def unequal(view: View) -> Array | None:
             total = given[pair[0]] + given[pair[1]] + emission
             with np.errstate(invalid="ignore"):  # what is not finite is another matter
                 off = np.abs(total - whole) > ROUNDED * (np.abs(total) + np.abs(whole)) + 1e-6
-            found[:, index] = view.frame.depth.size, off.any(axis=-1).sum()
+            found[:, index] = view.frame.depth.size, np.count_nonzero(over_channels(np.logical_or, off))
     return found if found.any() else None
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from svgf_cl.check.camera import path
 from svgf_cl.check.check import Check
 from svgf_cl.check.finding import Finding, Unknown, percent
-from svgf_cl.check.view import Array, Mask, View, Whole, sample, shifted
+from svgf_cl.check.view import Array, Mask, View, Whole, over_channels, sample, shifted
 from svgf_cl.filters import Settings
 
 EDGE = 0.1  # relative difference of depth between surfaces, not within one
@@ -76,7 +76,7 @@ def judge_names(sums: Array) -> list[Finding | Unknown]:
 def turns(before: View, now: View) -> Array | None:
     """Pixels on planes, found again: all; of the same normal; of normals turned all alike; whether the camera turns."""
     same, there = followed(before, now)
-    bends = [np.abs(shifted(now.normal, *step) - now.normal).max(axis=-1) for step in ((1, 0), (0, 1))]
+    bends = [over_channels(np.maximum, np.abs(shifted(now.normal, *step) - now.normal)) for step in ((1, 0), (0, 1))]
     plane = sample((np.maximum(*bends) < FLAT)[same] & before.hit[there], SAMPLES)
     normal, past = now.normal[same][plane], before.normal[there][plane]
     if len(normal) < ENOUGH:

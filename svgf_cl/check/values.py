@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from svgf_cl.check.check import Check
 from svgf_cl.check.finding import Finding, Unknown, percent
-from svgf_cl.check.view import FAR, Array, View, has_normal, in_range, pixel_centers, typical
+from svgf_cl.check.view import FAR, Array, View, has_normal, in_range, over_channels, pixel_centers, typical
 from svgf_cl.frame import CARRIED, CHANNELS
 
 FIELDS = tuple(name for name in CHANNELS if name != "id")
@@ -34,7 +34,7 @@ def not_finite(view: View) -> Array:
 
 def any_channel(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Whether it holds in any channel of a pixel: (H, W) from (H, W) or (H, W, C)."""
-    return np.asarray(np.atleast_3d(mask).any(axis=-1))
+    return over_channels(np.logical_or, np.atleast_3d(mask))
 
 
 def judge_finite(sums: Array) -> list[Finding]:
@@ -183,7 +183,7 @@ def above_one(view: View) -> Array | None:
     """Pixels, and those whose albedo is above 1."""
     if view.albedo is None:
         return None
-    return np.array([view.depth.size, np.count_nonzero(view.albedo.max(axis=-1) > 1.01)], np.float64)
+    return np.array([view.depth.size, np.count_nonzero(over_channels(np.maximum, view.albedo) > 1.01)], np.float64)
 
 
 def judge_albedo(sums: Array) -> list[Finding]:
@@ -211,7 +211,7 @@ def judge_roughness(sums: Array) -> list[Finding]:
 def at_one(view: View) -> Array:
     """Pixels of surfaces; with a channel of exactly 1; with one above."""
     color = view.color[view.hit]
-    return np.array([len(color), (color == 1).any(axis=-1).sum(), (color > 1).any(axis=-1).sum()], np.float64)
+    return np.array([len(color), any_channel(color == 1).sum(), any_channel(color > 1).sum()], np.float64)
 
 
 def judge_range(sums: Array) -> list[Finding | Unknown]:
