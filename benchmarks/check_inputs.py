@@ -27,8 +27,8 @@ INTRODUCTION = """# Checking inputs
 
 Made by `python -m benchmarks.check_inputs`; do not edit.
 
-Most trouble with a denoiser is trouble with what it is given. `svgf-cl check FRAMES` looks for it in the frames alone,
-before anything is denoised:
+Most trouble with a denoiser is trouble with what it is given.
+`svgf-cl check FRAMES` looks for it in the frames, before anything is denoised:
 
 ```sh
 svgf-cl check out/box                # a table of what is wrong: exit code 1 where anything is
@@ -42,19 +42,24 @@ report = check_sequence(frames)  # Report: findings, unknown, passed
 report = check_frame(frame, previous)
 ```
 
-A finding names the field, what is wrong with it and the figures that say so, what svgf_cl expects and what to do. An
-error spoils the picture; a warning costs quality, or is none if it is meant so. What these frames cannot tell, as the
-sign of motion where nothing moves, is listed as not checked; it is not passed. A field that is missing, or of a wrong
-shape, is an error right away. Eight frames of a moving camera are plenty.
+A finding names the field, what is wrong with it, the figures that show it, what svgf_cl expects, and what to do.
+An error spoils the picture.
+A warning costs quality; it is no mistake if you meant it so.
+What the frames cannot tell, such as the sign of motion where nothing moves, is listed as not checked, and never as passed.
+A required field that is missing, or a field of a wrong shape, is refused at once.
+Eight frames of a moving camera are plenty.
 
-Every field that is there is looked at; `Report.looked_at` says which. Some checks take a picture of 10,000 pixels or
-more, and say so. `svgf-cl denoise` looks at the first eight frames in the same way and warns; `--no-check` turns that
-off.
+`Report.looked_at` says which fields were there to be looked at.
+Some checks need a picture of 10,000 pixels or more, and find nothing in a smaller one.
+Of pictures with more than 240 rows, most checks look at every second or third row and column, and so on.
+`svgf-cl denoise` looks at the first eight frames in the same way and warns; `--no-check` turns that off.
 
 ## How it is told
 
-Every mistake has a cure. Fields hang together; where they do so clearly better with the cure than without, that is the
-mistake. A check that relies on a field which is wrong is put off until that is mended.
+The fields of a frame depend on each other: motion, for example, must lead to the same surface in the frame before.
+For every known mistake there is a way to undo it.
+If the fields go together clearly better after that, the mistake was made.
+A check that relies on a field which is wrong waits until that field is mended.
 
 - **motion** is right where normals, albedo and steps of depth are found again in the frame before (`check/motion.py`).
   Jitter is what no camera's movement explains: a rotation and a parallax leave no offset (`check/camera.py`).

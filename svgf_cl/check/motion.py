@@ -21,6 +21,7 @@ SAMPLES = 1500
 MOVING = 0.5  # of the fastest motion: what moves less is not looked at
 ENOUGH = 100  # pixels
 BETTER = 0.8  # an error that much smaller tells
+NOTICED = 0.2  # pixels off: surfaces that are nearer than that to where motion leads have moved as it says
 ALIKE = 1.05  # errors nearer to each other than this do not tell two mistakes apart
 SEEN = 0.4  # share of pixels that must have been in the picture before
 LOST = 0.5  # of the difference between any two places
@@ -162,7 +163,7 @@ def judge(sums: Array) -> list[Finding | Unknown]:
     anywhere, given, *cures, local = np.array(differences) / max(change, 1e-12)
     cured = np.array(cures)
     best = int(np.flatnonzero(cured <= ALIKE * cured.min())[0])
-    if moves and cured[best] < BETTER * given:
+    if moves and given > NOTICED and cured[best] < BETTER * given:
         mistake = MISTAKES[best]
         measured = f"surfaces are {given:.2g} pixels off where it leads, {cured[best]:.2g} with the cure"
         return [Finding("motion", mistake.what, measured, mistake.cure)]

@@ -165,7 +165,9 @@ def shining(view: View) -> Array | None:
     """Pixels that shine; those darker than what they emit; of these, those that are not so once decoded from sRGB."""
     if view.emission is None:
         return None
-    emission, color = (values[view.hit & (over_channels(np.maximum, view.emission) > 0)] for values in (view.emission, view.color))
+    emission, color = (
+        values[view.hit & (over_channels(np.maximum, view.emission) > 0)] for values in (view.emission, view.color)
+    )
     if not len(emission):
         return None
     least = emission * (1 - DARKER)

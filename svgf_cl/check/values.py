@@ -57,9 +57,12 @@ def negative(view: View) -> Array:
     """Of each of `POSITIVE`, its pixels, and those with a clearly negative channel: (2, F)."""
     found = np.zeros((2, len(POSITIVE)))
     for index, name in enumerate(POSITIVE):
-        if getattr(view.frame, name) is not None:
-            values = np.nan_to_num(getattr(view.frame, name), posinf=0, neginf=0)
-            below = values < -1e-3 * np.abs(values).mean(dtype=np.float64)
+        values = getattr(view.frame, name)
+        if values is not None:
+            below = np.zeros_like(values, np.bool_)
+            if (values < 0).any():  # else there is no need for the mean, which takes long
+                finite = np.nan_to_num(values, posinf=0, neginf=0)
+                below = finite < -1e-3 * np.abs(finite).mean(dtype=np.float64)
             found[:, index] = view.frame.depth.size, np.count_nonzero(any_channel(below))
     return found
 
@@ -152,7 +155,7 @@ def judge_misses(sums: Array) -> list[Finding]:
     pixels, *bad = sums
     mistakes = (
         ("negative", "negate the z of a camera that looks along -z"),
-        ("0 where nothing was hit", "give +inf there"),
+        ("0 where nothing was hit", "give the distance, and +inf where nothing was hit"),
         ("a finite number where nothing was hit", "give +inf there"),
     )
     return [
@@ -228,7 +231,9 @@ def judge_range(sums: Array) -> list[Finding | Unknown]:
 FINITE = Check("every field: finite", not_finite, judge_finite, fields=FIELDS)
 NEGATIVE = Check("light, reflectance, lengths: not negative", negative, judge_negative, fields=POSITIVE)
 FILLED = Check("surfaces: not one value everywhere", constant, judge_constant, "nothing was hit", fields=CONSTANT)
-LENGTH = Check("normal: unit vectors", lengths, judge_lengths, "nothing was hit", trusts=("normal", "depth"))
+LENGTH = Check(
+    "normal: unit vectors", lengths, judge_lengths, "depth is the same everywhere", trusts=("normal", "depth")
+)
 MISSES = Check("depth: in range where there is a normal", misses, judge_misses)
 SEEN = Check("depth: not empty", hits, judge_hits, trusts=("depth",))
 ALBEDO = Check("albedo: 0 to 1", above_one, judge_albedo, "no albedo was given")

@@ -16,8 +16,8 @@ Mask = NDArray[np.bool_]
 Whole = NDArray[np.int64]
 
 # Rows that suffice. Of a higher frame every second, third... row and column is looked at: those make a frame too.
-# docs/checking_inputs.md says what is found in frames of 180 rows.
-ENOUGH_ROWS = 180
+# Of 720 rows, 180 no longer tell a camera that moves slowly from one that stands still.
+ENOUGH_ROWS = 240
 # Pixels of a picture; in fewer, much lies on edges, and those of one field fall on those of others by chance.
 FEW = 100 * 100
 # Where the denoiser sees a surface: between these depths, where the normal is at least so long.

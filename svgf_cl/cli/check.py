@@ -23,15 +23,15 @@ def check(
     frames: Frames,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="FILE", help="Also draw the fields of the last frame: .png."),
+        typer.Option("-o", "--output", metavar="FILE", help="Also draw the fields of the last frame into a PNG file."),
     ] = None,
     allow_gaps: AllowGaps = False,
 ) -> None:
     """Look for what is wrong with the frames of a shot, before they are denoised.
 
-    Motion that points the other way, normals in view space, depth of a depth buffer, colour meant for a display: the
-    frames themselves tell, if the camera moves. Eight frames are plenty. What they cannot tell is listed as not
-    checked. Exit code 1 where anything is wrong.
+    It finds motion that points the other way, normals in view space, the depth of a depth buffer, colour that was
+    encoded for a display, and more. It needs frames of a moving camera; eight are plenty. What the frames cannot tell
+    is listed as not checked. Exit code 1 where anything is wrong.
 
     \b
     Examples:

@@ -22,7 +22,8 @@ def compare(
     b: Annotated[
         Path,
         typer.Argument(
-            metavar="B", help="Its reference, or a folder; beside reference.*.exr in it, frame.*.exr do not count."
+            metavar="B",
+            help="Its reference, or a folder of them. If the folder has reference.*.exr, its frame.*.exr are not read.",
         ),
     ],
     min_psnr: Annotated[
@@ -38,8 +39,9 @@ def compare(
 ) -> None:
     """Compare EXR pictures (R, G, B) with their references.
 
-    PSNR and SSIM are taken as shown (exposed, clipped to 0..1, sRGB), relMSE on linear HDR. Frames of two folders are
-    paired by number; every reference needs its picture. Exit code 1 where a frame misses a threshold.
+    PSNR and SSIM compare the pictures as they are shown (exposed, clipped to 0..1, in sRGB), relMSE the linear HDR
+    values. Frames of two folders are paired by number; every reference needs its picture. Exit code 1 where a frame
+    misses a threshold.
 
     \b
     Examples:

@@ -42,10 +42,10 @@ def denoise(
     """Denoise a sequence of EXR frames.
 
     Writes one EXR a frame under the frame's own name. R, G and B are denoised (linear HDR, 32-bit floats); all else in
-    the frame's file passes through: other channels, windows, attributes. The channels read are those that
-    `svgf-cl render` writes: R G B, normal.X Y Z, depth.Z, motion.X Y [Z], and where there are any albedo.R G B, id,
-    emission.R G B, direct.R G B, indirect.R G B. One line says which of them were found. All frames count as one shot:
-    each uses the ones before it.
+    the frame's file passes through: other channels, windows, attributes. It needs the channels R G B, normal.X Y Z,
+    depth.Z and motion.X Y, and also reads motion.Z, albedo.R G B, id, emission.R G B, direct.R G B and indirect.R G B
+    where they are there. One line says which of them were found. All frames count as one shot: each uses the ones
+    before it.
 
     If it is interrupted, run the same command again. All frames are then filtered again, because each picture depends
     on all frames before it, but pictures that are there already and are the same are kept.

@@ -73,7 +73,8 @@ class FirstFrames:
     def _warn(self) -> None:
         report = self._inspection.report()
         found = [f"{finding.field}: {finding.what}; {finding.cure}" for finding in report.findings]
-        found += [f"depth: {unknown.why}" for unknown in report.unknown if unknown.topic == SEEN.topic]
+        if not any(finding.field == "depth" for finding in report.findings):
+            found += [f"depth: {unknown.why}" for unknown in report.unknown if unknown.topic == SEEN.topic]
         for line in found:
             warnings.warn(line, stacklevel=2)
         if found:

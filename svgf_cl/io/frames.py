@@ -14,11 +14,7 @@ import numpy.typing as npt
 
 from svgf_cl.errors import FileError, FrameError
 from svgf_cl.frame import REQUIRED, Frame
-from svgf_cl.io.exr import (
-    read_attribute,
-    read_channels,
-    write_channels,
-)
+from svgf_cl.io.exr import read_attribute, read_channels, write_channels
 from svgf_cl.io.image import Plane
 from svgf_cl.io.look_alikes import advice
 
@@ -101,7 +97,8 @@ def frame_of(path: Path, planes: Mapping[str, Plane]) -> Frame:
     values = {field: value for field in CHANNEL_NAMES if (value := field_of(path, planes, field)) is not None}
     missing = [field for field in REQUIRED if field not in values]
     if missing:
-        raise absent(path, missing, planes)
+        light = [] if values.keys() & {"color", "direct", "indirect"} else ["color"]
+        raise absent(path, [*light, *missing], planes)
     frame = Frame(**values)
     try:
         frame.check_presence()
@@ -130,7 +127,10 @@ def whole_numbers(path: Path, plane: Plane) -> npt.NDArray[np.uint32]:
         return plane.astype(np.uint32, copy=False)
     fits = (plane >= 0) & (plane <= MAX_ID) & (plane == np.floor(plane))
     if not fits.all():
-        raise FileError(f"{path}: expected whole numbers in 0..{MAX_ID} in channel id, got {plane[~fits][0]}")
+        raise FileError(
+            f"{path}: expected whole numbers in 0..{MAX_ID} in channel id, got {plane[~fits][0]}; "
+            "an id up to 4294967295 takes a channel of unsigned integers"
+        )
     return plane.astype(np.uint32)
 
 

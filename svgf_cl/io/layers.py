@@ -8,7 +8,8 @@ from collections.abc import Collection, Sequence
 from svgf_cl.frame import CHANNELS
 
 RGB = ("R", "G", "B")
-TOGETHER = (("R", "G", "B", "A"), ("X", "Y", "Z"))
+# What tells nothing without a layer: that of a part is called like the part.
+LETTERS = frozenset("RGBAXYZ")
 # How else renderers call the components of a layer.
 COMPONENTS = {"r": 0, "red": 0, "g": 1, "green": 1, "b": 2, "blue": 2}
 # How renderers call the layer that is the picture, whatever comes before in names such as ViewLayer.Combined.
@@ -59,8 +60,8 @@ def is_picture_name(name: str) -> bool:
 def unique_names(parts: Sequence[tuple[str, Collection[str]]]) -> list[dict[str, str]]:
     """Name the channels of a file so that no two are called the same.
 
-    A name that several parts have gets the part's name before it, as a layer; so do its companions in ``R G B A`` or
-    ``X Y Z``. Those of the part that is the picture stay as they are.
+    In a file of several parts the part's name comes before ``R G B A X Y Z``, as a layer's would, and before any other
+    name that several parts have. The channels of the part that is the picture stay as they are.
 
     Parameters
     ----------
@@ -78,27 +79,24 @@ def unique_names(parts: Sequence[tuple[str, Collection[str]]]) -> list[dict[str,
         More than one part could be the picture, or two names stay the same.
     """
     counts = Counter(name for _, names in parts for name in names)
-    pictures = [part for part, names in parts if {*RGB} <= {*names}]
-    main = pictures if len(pictures) < 2 else [part for part in pictures if is_picture_name(part)]
-    if pictures and len(main) != 1:
+    pictures = main = [part for part, names in parts if {*RGB} <= {*names}]
+    if len(pictures) > 1:
+        named = [part for part in pictures if is_picture_name(part)]
+        main = named or [part for part in pictures if _last(part) not in CHANNELS]
+    if len(main) > 1:
         raise ValueError(
             f"expected R G B in one part, or one of the parts with them named {' or '.join(PICTURES)}; found them in"
             f" {', '.join(pictures)}"
         )
-    shared = {name for name, count in counts.items() if count > 1}
+    moved = {name for name, count in counts.items() if count > 1 or (name in LETTERS and len(parts) > 1)}
     renamed = [
-        {name: name if part in main or not _moves(name, shared & {*names}) else f"{part}.{name}" for name in names}
+        {name: f"{part}.{name}" if name in moved and part not in main else name for name in names}
         for part, names in parts
     ]
     for name, count in Counter(name for names in renamed for name in names.values()).items():
         if count > 1:
             raise ValueError(f"expected channels of different names, found two called {name}")
     return renamed
-
-
-def _moves(name: str, shared: Collection[str]) -> bool:
-    """Whether a channel is, or is one with, a channel of its part that is `shared`."""
-    return name in shared or any(name in together and {*together} & {*shared} for together in TOGETHER)
 
 
 def _last(layer: str) -> str:

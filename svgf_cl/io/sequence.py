@@ -120,7 +120,10 @@ def shot_in(folder: Path, stem: str = "frame") -> list[Path]:
     names = [name for path in visible if path.suffix.lower() == ".exr" and (name := Name.of(path))]
     ours = [name for name in names if name.shot != OTHERS[stem]] or names
     if not ours:
-        raise FileError(f"{folder}: expected files named {stem}.0000.exr and so on in this folder, found none")
+        raise FileError(
+            f"{folder}: expected files named {stem}.0000.exr and so on in this folder, or "
+            "of another name with a number, found none"
+        )
     check_one_shot(ours)
     strangers = look_alikes(ours, visible)
     if strangers:
@@ -178,7 +181,7 @@ def check_one_shot(names: Sequence[Name]) -> None:
     if len(shots) > 1:
         found = [f"{min(paths)} ({len(paths)} of its kind)" for paths in shots.values()]
         raise FileError(
-            f"{listed(found)}: expected the frames of one shot, in one folder and named alike but for the number, "
+            f"{listed(found)}: expected the frames of one shot, in one folder and named alike but for their last number, "
             f"found {len(shots)} kinds; give the files of one, or rename those that belong to it"
         )
 
@@ -189,9 +192,7 @@ def check_doubles(names: Sequence[Name]) -> None:
     for name in names:
         key = identity(name.path)
         if key in seen:
-            raise FileError(
-                f"{name.path}: expected every file once, found it as {seen[key]} too; leave one of them out"
-            )
+            raise FileError(f"{name.path}: expected every file once, got it as {seen[key]} too; give it once")
         seen[key] = name.path
     for before, after in pairwise(names):
         if before.number == after.number:

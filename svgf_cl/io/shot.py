@@ -18,11 +18,6 @@ from svgf_cl.io.window import Window, placed, union
 NOTHING = {"depth": np.inf, "albedo": 1.0, "roughness": 1.0}
 
 
-def read_sequence(paths: Sequence[Path]) -> Iterator[Frame]:
-    """Read one frame after the other, on their `shared_window`; errors as of that and of `read_shot`."""
-    return (frame for _, frame in read_shot(paths, shared_window(paths)))
-
-
 def read_shot(paths: Sequence[Path], window: Window) -> Iterator[tuple[Image, Frame]]:
     """Read one file of a shot after the other: all of it, and its frame on a window that the shot shares.
 

@@ -138,7 +138,9 @@ def test_empty_depth_is_named(
     tmp_path: Path, room: list[Frame], depth: float, what: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = written(tmp_path / "in", changed(room, "depth", lambda given: given * 0 + depth))
-    assert f"depth: {what}" in said(capsys, folder, "-o", tmp_path / "out")[1]
+    err = said(capsys, folder, "-o", tmp_path / "out")[1]
+    assert f"depth: {what}" in err
+    assert "mend depth first" not in err
 
 
 def test_a_shot_of_nothing_but_sky_is_said(

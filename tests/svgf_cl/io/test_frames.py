@@ -71,7 +71,7 @@ def test_an_id_that_is_no_whole_number_is_refused(tmp_path: Path, value: float) 
     path = tmp_path / "frame.0000.exr"
     write_frame(path, plain_frame(id=np.ones((3, 4), np.uint32)))
     write_channels(path, {**read_channels(path), "id": np.full((3, 4), value, np.float32)})
-    with pytest.raises(FileError, match=r"frame\.0000\.exr: expected whole numbers"):
+    with pytest.raises(FileError, match=r"frame\.0000\.exr: expected whole numbers.*unsigned integers"):
         read_frame(path)
 
 
@@ -98,6 +98,13 @@ def test_a_frame_without_any_radiance_is_refused(tmp_path: Path) -> None:
     write_channels(path, planes)
     with pytest.raises(FileError, match=r"frame\.0000\.exr: Frame\.color: expected an array.*channels found"):
         read_frame(path)
+
+
+def test_a_frame_of_another_renderer_is_told_all_that_is_missing_at_once(tmp_path: Path) -> None:
+    plane = np.ones((3, 4), np.float32)
+    write_channels(tmp_path / "a.exr", {f"L.Combined.{c}": plane for c in "RGB"} | {"L.Depth.Z": plane})
+    with pytest.raises(FileError, match=r"expected channels R G B normal\.X .*rename it to R G B; L\.Depth\.Z looks"):
+        read_frame(tmp_path / "a.exr")
 
 
 def test_an_inconsistent_frame_is_not_written(tmp_path: Path) -> None:

@@ -205,12 +205,15 @@ def write_parts(path: Path, parts: list[tuple[str, str]], **more: object) -> Non
 @pytest.mark.parametrize(
     ("parts", "names"),
     [
-        ([("rgba", "R G B A"), ("aov", "Z id")], "R G B A Z id"),
+        ([("rgba", "R G B A"), ("aov", "Z id")], "R G B A aov.Z id"),
         ([("rgba", "R G B"), ("albedo", "R G B")], "R G B albedo.R albedo.G albedo.B"),
         ([("albedo", "R G B"), ("Beauty", "R G B A")], "albedo.R albedo.G albedo.B R G B A"),
         ([("C", "R G B"), ("normal", "X Y Z"), ("motion", "X Y")],
          "R G B normal.X normal.Y normal.Z motion.X motion.Y"),
         ([("only", "R G B A"), ("depth", "Z A"), ("fog", "Z")], "R G B A depth.Z depth.A fog.Z"),
+        ([("rgba", "R G B"), ("depth", "Z"), ("normal", "X Y Z")], "R G B depth.Z normal.X normal.Y normal.Z"),
+        ([("direct", "R G B"), ("indirect", "R G B")], "direct.R direct.G direct.B indirect.R indirect.G indirect.B"),
+        ([("mine", "R G B"), ("albedo", "R G B")], "R G B albedo.R albedo.G albedo.B"),
         ([("a", "L.R L.G L.B"), ("b", "M.R M.G M.B")], "L.R L.G L.B M.R M.G M.B"),
     ],
 )  # fmt: skip

@@ -12,7 +12,7 @@ from svgf_cl import FileError, Frame
 from svgf_cl.io.exr import read_image, write_image
 from svgf_cl.io.frames import frame_path, read_frame, write_frame
 from svgf_cl.io.sequence import find_frames
-from svgf_cl.io.shot import read_sequence, shared_window
+from svgf_cl.io.shot import read_shot, shared_window
 from svgf_cl.io.window import Window
 from tests.exr_files import exr_bytes
 from tests.frames import wall
@@ -23,11 +23,16 @@ def plain_frame(h: int = 3, w: int = 4, **fields: object) -> Frame:
     return wall((h, w), **{"depth": np.inf, **fields})
 
 
+def frames_in(folder: Path) -> list[Frame]:
+    files = find_frames([folder])
+    return [frame for _, frame in read_shot(files, shared_window(files))]
+
+
 def test_frames_of_a_sequence_have_one_size(tmp_path: Path) -> None:
     write_frame(frame_path(tmp_path, 0), plain_frame(3, 4))
     write_frame(frame_path(tmp_path, 1), plain_frame(4, 4))
     with pytest.raises(FileError, match=r"frame\.0001\.exr: expected .* 4x3 at 0,0 and .*0000\.exr, got 4x4"):
-        list(read_sequence(find_frames([tmp_path])))
+        frames_in(tmp_path)
 
 
 def test_frames_of_a_sequence_have_the_same_fields(tmp_path: Path) -> None:
@@ -37,10 +42,10 @@ def test_frames_of_a_sequence_have_the_same_fields(tmp_path: Path) -> None:
     write_frame(frame_path(tmp_path, 0), flat)
     write_frame(frame_path(tmp_path, 1), replace(flat, albedo=None, emission=radiance))
     with pytest.raises(FileError, match=r"1\.exr: expected .*0000\.exr, got a frame without albedo, with emission"):
-        list(read_sequence(find_frames([tmp_path])))
+        frames_in(tmp_path)
     write_frame(frame_path(tmp_path, 1), plain_frame(albedo=radiance))
     with pytest.raises(FileError, match=r"0001\.exr: .* got a frame with motion\.Z"):
-        list(read_sequence(find_frames([tmp_path])))
+        frames_in(tmp_path)
 
 
 @pytest.mark.parametrize("field", ["color", "depth", "normal"])
@@ -48,12 +53,12 @@ def test_a_field_of_nothing_but_nan_is_refused(tmp_path: Path, field: str) -> No
     frame = plain_frame()
     write_frame(frame_path(tmp_path, 0), plain_frame(**{field: np.full_like(getattr(frame, field), np.nan)}))
     with pytest.raises(FileError, match=rf"0000\.exr: expected finite values in {field}"):
-        list(read_sequence(find_frames([tmp_path])))
+        frames_in(tmp_path)
 
 
 def test_a_sequence_of_nothing_but_sky_is_fine(tmp_path: Path) -> None:
     write_frame(frame_path(tmp_path, 0), plain_frame())
-    assert len(list(read_sequence(find_frames([tmp_path])))) == 1
+    assert len(frames_in(tmp_path)) == 1
 
 
 def on_window(path: Path, frame: Frame, at: tuple[int, int], display: Window, aspect: float = 1.0) -> None:
@@ -72,7 +77,7 @@ def test_a_frame_shows_nothing_outside_of_its_data_window(tmp_path: Path) -> Non
     files = find_frames([tmp_path])
     assert shared_window(files) == Window(-2, 0, 6, 9)
     nothing = {"depth": np.inf, "albedo": 1.0}
-    for found, inside in zip(read_sequence(files), (np.s_[:3, 2:], np.s_[6:, :4]), strict=True):
+    for found, inside in zip(frames_in(tmp_path), (np.s_[:3, 2:], np.s_[6:, :4]), strict=True):
         assert found.shape == (9, 6)
         outside = np.ones(found.shape, bool)
         outside[inside] = False
@@ -101,7 +106,7 @@ def test_frames_that_cannot_be_one_shot_are_named(
     on_window(tmp_path / "frame.0000.exr", plain_frame(), (0, 0), Window(0, 0, 8, 8))
     on_window(tmp_path / "frame.0001.exr", plain_frame(), at, display, aspect)
     with pytest.raises(FileError, match=words) as error:
-        list(read_sequence(find_frames([tmp_path])))
+        frames_in(tmp_path)
     assert all(str(tmp_path / f"frame.000{index}.exr") in str(error.value) for index in range(2))
 
 
