@@ -45,12 +45,12 @@ report = check_frame(frame, previous)
 A finding names the field, what is wrong with it, the figures that show it, what svgf_cl expects, and what to do.
 An error spoils the picture.
 A warning costs quality; it is no mistake if you meant it so.
-What the frames cannot tell, such as the sign of motion where nothing moves, is listed as not checked, and never as passed.
+What the frames cannot tell is listed as not checked, and never as passed: the sign of motion where nothing moves.
 A required field that is missing, or a field of a wrong shape, is refused at once.
 Eight frames of a moving camera are plenty.
 
 `Report.looked_at` says which fields were there to be looked at.
-Some checks need a picture of 10,000 pixels or more, and find nothing in a smaller one.
+Some checks need a picture of 10,000 pixels or more; of a smaller one they are listed as not checked.
 Of pictures with more than 240 rows, most checks look at every second or third row and column, and so on.
 `svgf-cl denoise` looks at the first eight frames in the same way and warns; `--no-check` turns that off.
 

@@ -181,8 +181,8 @@ def check_one_shot(names: Sequence[Name]) -> None:
     if len(shots) > 1:
         found = [f"{min(paths)} ({len(paths)} of its kind)" for paths in shots.values()]
         raise FileError(
-            f"{listed(found)}: expected the frames of one shot, in one folder and named alike but for their last number, "
-            f"found {len(shots)} kinds; give the files of one, or rename those that belong to it"
+            f"{listed(found)}: expected the frames of one shot, in one folder and named alike but for their last "
+            f"number, found {len(shots)} kinds; give the files of one, or rename those that belong to it"
         )
 
 
