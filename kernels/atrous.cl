@@ -1,17 +1,18 @@
 // One level of the edge-avoiding a-trous wavelet filter; the 5x5 or 3x3 taps of level i = 1, 2, ... lie 2^(i - 1)
 // pixels apart, which is its step.
 //
-//   c = sum h w c / sum h w,   w = w_z w_n w_l (SVGF)  or  w_z w_n w_c (EAW)
+//   c = sum h w c / sum h w,   w = w_z w_n w_a w_l (SVGF)  or  w_z w_n w_a w_c (EAW)
 //   w_z = exp(-|z - z'| / (step (sigma_depth |grad z . d| + slope_floor z |d|)))     w_n = exp(sigma_normal (n.n' - 1))
+//   w_a = 1 where no channel's albedos are further apart than albedo_threshold octaves, else 0
 //
 //   GUIDED_BY_VARIANCE 1, SVGF:  Var = sum h^2 w^2 Var / (sum h w)^2
 //     w_l = exp(-|l - l'| / (sigma_luminance sqrt(gauss3x3(Var)) + 1e-3 l + 1e-12))
 //   GUIDED_BY_VARIANCE 0, EAW:
 //     w_c = exp(-|c - c'|^2 / (sigma_color / step)^2)
 //
-// in   guide: normal, depth;  source: colour and, in SVGF, variance
+// in   guide: normal, depth, albedo;  source: colour and, in SVGF, variance
 // out  target: the same
-// Schied et al. 2017, section 4.3 and 4.4; Dammertz et al. 2010. The three terms and h share one exponential; offsets
+// Schied et al. 2017, section 4.3 and 4.4; Dammertz et al. 2010. All terms and h share one exponential; offsets
 // come in pairs +d and -d that share the scale of w_z.
 
 // Coefficients of the spline from the middle, as exponents: B3 has 3/8, 1/4, 1/16, of which 3/8 = 1.5 / 4 lies on a
@@ -139,15 +140,17 @@ INLINE int interleaved_row(int height, int step) {
 }
 
 KERNEL atrous(const int4 size, const int step, const float sigma_depth, const float sigma_normal,
-              const float SIGMA_LIGHT, const float depth_slope_floor, __global const float *restrict guide,
-              __global const light_t *restrict source, __global light_t *restrict target) {
+              const float albedo_threshold, const float depth_slope_floor, const float SIGMA_LIGHT,
+              __global const float *restrict guide, __global const light_t *restrict source,
+              __global light_t *restrict target) {
     const int x = first_column(), y = interleaved_row(size.y, step);
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
     const Level level = {size, step, SIGMA_LIGHT, guide, source};
 
     Centre centre;
-    centre.surface = surface_at(size, here, (float)step, sigma_depth, sigma_normal, depth_slope_floor, guide);
+    centre.surface =
+        surface_at(size, here, (float)step, sigma_depth, sigma_normal, albedo_threshold, depth_slope_floor, guide);
     const float h = MIDDLE * MIDDLE;
     Sum sums[SIGNALS];
     UNROLLED_FOR(s, SIGNALS) {

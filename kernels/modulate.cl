@@ -1,15 +1,19 @@
 // First and last stage: the user's interleaved (H, W, C) arrays in and out of the planar layout.
 //
-//   demodulate   c = min(max((radiance - emission) / albedo', 0), MAX_LIGHT),  albedo' = clamp(albedo, 0.001, 1)
+//   demodulate   c = min(max((radiance - emission) / albedo', 0), MAX_LIGHT)
+//                albedo'_k = max(min(albedo_k, 1), 0.04 max over channels of albedo, 0.02)
 //   modulate     out = sum over signals c * albedo' + emission
 //
 // in   radiance of each signal; albedo, emission, id where the frame has them; normal, depth
-// out  guide: normal, depth (both 0 on a miss), id;  illumination: c
+// out  guide: normal, depth (both 0 on a miss), id, albedo (as a code);  illumination: c
 // A single signal holds the emission, of two neither does. With TAA `out` is a picture, else the user's array.
-// Texture never goes through the filter (Schied et al. 2017, section 3). The floor on albedo keeps specular light on
-// black surfaces: modulate multiplies by the number that demodulate divided by.
+// Texture never goes through the filter (Schied et al. 2017, section 3). The floors keep light that albedo does not
+// hold, as a coat reflects it, from becoming a light that is many times too bright for its neighbours: a dielectric
+// reflects some 0.04 of what comes in, whatever its colour. Modulate multiplies by the number that demodulate divided
+// by.
 
-#define MIN_ALBEDO 0.001f
+#define MIN_ALBEDO 0.02f
+#define MIN_CHANNEL 0.04f  // of the greatest channel
 #define MAX_CHANNEL 1e10f  // of a radiance or a normal; the sun's disc has 2e9 cd/m2
 #define MIN_DEPTH 1e-20f
 #define MAX_DEPTH 1e20f     // some renderers write their greatest number where nothing was hit
@@ -38,9 +42,17 @@ INLINE Color known_color(Color c) {
 INLINE Color known_albedo(const int4 size, int x, int y, __global const float *albedo) {
     Color a = load_color(size, x, y, albedo);
     UNROLLED_FOR(k, 3) {
-        a.channel[k] = where(a.channel[k] < 1.0f, max(a.channel[k], (floatv)(MIN_ALBEDO)), (floatv)(1.0f));
+        a.channel[k] = where(a.channel[k] < 1.0f, max(a.channel[k], (floatv)(0.0f)), (floatv)(1.0f));
     }
     return a;
+}
+
+// What light is divided by, and multiplied by again.
+INLINE Color divisor(Color albedo) {
+    const floatv greatest = max(max(albedo.channel[0], albedo.channel[1]), albedo.channel[2]);
+    const floatv least = max(MIN_CHANNEL * greatest, (floatv)(MIN_ALBEDO));
+    UNROLLED_FOR(k, 3) albedo.channel[k] = max(albedo.channel[k], least);
+    return albedo;
 }
 #endif
 
@@ -94,7 +106,9 @@ KERNEL demodulate(const int4 size, EACH_RADIANCE(DECLARED),
     UNROLLED_FOR(k, 3) light[EMISSION_SIGNAL].channel[k] -= glow.channel[k];
 #endif
 #if HAS_ALBEDO
-    const Color texture = known_albedo(size, x, y, albedo);
+    const Color seen = known_albedo(size, x, y, albedo);
+    store_int(albedo_code(seen.channel), (__global int *)SHARED_PLANE(size, guide, GUIDE_ALBEDO) + here);
+    const Color texture = divisor(seen);
     UNROLLED_FOR(s, SIGNALS) {
         UNROLLED_FOR(k, 3) light[s].channel[k] /= texture.channel[k];
     }
@@ -129,7 +143,7 @@ KERNEL modulate(const int4 size,
     const int here = at(size, x, y);
     Color c = get_light(size, here, illumination);
 #if HAS_ALBEDO
-    const Color texture = known_albedo(size, x, y, albedo);
+    const Color texture = divisor(known_albedo(size, x, y, albedo));
     UNROLLED_FOR(k, 3) c.channel[k] *= texture.channel[k];
 #endif
 #if HAS_EMISSION

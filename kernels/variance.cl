@@ -1,7 +1,7 @@
 // Variance of luminance: temporal where history is long enough, else estimated over space.
 //
 //   N >= 3.5:  Var = V
-//   else:    M~ = sum w M / sum w,  Var = 4 / N * sum w (V + (M - M~)^2) / sum w,  over 7x7,  w = w_z w_n
+//   else:    M~ = sum w M / sum w,  Var = 4 / N * sum w (V + (M - M~)^2) / sum w,  over 7x7,  w = w_z w_n w_a
 //
 // in   guide; moments: N, M, V
 // out  illumination: its variance plane(s)
@@ -46,9 +46,9 @@ INLINE Moments neighbourhood(const int4 size, int here, Surface surface, const f
     return sum;
 }
 
-KERNEL variance(const int4 size, const float sigma_depth, const float sigma_normal, const float depth_slope_floor,
-                __global const float *restrict guide, __global const light_t *restrict moments,
-                __global light_t *restrict illumination) {
+KERNEL variance(const int4 size, const float sigma_depth, const float sigma_normal, const float albedo_threshold,
+                const float depth_slope_floor, __global const float *restrict guide,
+                __global const light_t *restrict moments, __global light_t *restrict illumination) {
     const int x = first_column(), y = row();
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
@@ -60,7 +60,8 @@ KERNEL variance(const int4 size, const float sigma_depth, const float sigma_norm
         result[s] = load_variance(PLANE(size, moments, MOMENTS_VARIANCE, s, 0) + here);
     }
     if (any_lane(brief)) {
-        const Surface surface = surface_at(size, here, 1.0f, sigma_depth, sigma_normal, depth_slope_floor, guide);
+        const Surface surface =
+            surface_at(size, here, 1.0f, sigma_depth, sigma_normal, albedo_threshold, depth_slope_floor, guide);
         const Moments sum = neighbourhood(size, here, surface, centre, guide, moments);
         const floatv boost = LONG_HISTORY / max(frames, (floatv)(1.0f));
         UNROLLED_FOR(s, SIGNALS) {

@@ -30,6 +30,7 @@ HEADERS = (
     "gathers.clh",
     "storage.clh",
     "light.clh",
+    "albedo.clh",
     "interleaved.clh",
     "surface.clh",
 )

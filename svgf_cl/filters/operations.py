@@ -15,6 +15,7 @@ DOT = 5  # x x' + y y' + z z'; a luminance too
 EXP = {"precise": 14, "fast": 2}  # polynomial of degree 4, 2 a degree, and 6 to reduce the range; or a conversion
 BLEND = 3  # a + t (b - a)
 DISTANCE = 3  # |a - b| scale
+ALBEDO = 5 + 2  # all channels of a code between two others; a choice
 GRADIENT = 10  # per axis two differences, two magnitudes, a choice
 SAFE = 2  # finite? else another value
 
@@ -23,7 +24,7 @@ def demodulate(inputs: Inputs) -> float:
     """Section 1: a unit normal, then radiance made safe, divided by albedo and clamped, and its luminance."""
     signals = len(inputs.signals)
     normal = DOT + 2 + 3 + SAFE
-    albedo = 3 * (SAFE + 1) if inputs.divides_by_albedo else 0
+    albedo = 3 * (SAFE + 1 + 1) + 4 if inputs.divides_by_albedo else 0  # its code; the floors
     emission = 3 * (SAFE + 2) if inputs.emission_signal >= 0 else 0
     return normal + albedo + emission + signals * (3 * (SAFE + 1 + 2) + DOT)
 
@@ -66,6 +67,7 @@ def wavelet(inputs: Inputs, taps: int, light: LightOperations) -> float:
     surface = GRADIENT + 3 + 2 + 1  # normal, slope and floor times their sigmas
     tolerance = 4 + 2 + 1  # |g . d|; plus the floor; reciprocal
     exponent = DISTANCE + 1 + 2 * 3  # of w_z and h; of w_n
+    exponent += ALBEDO if inputs.divides_by_albedo else 0  # of w_a
     per_signal = taps * (light.weight + light.sums) + light.once
     return surface + taps // 2 * tolerance + taps * exponent + len(inputs.signals) * per_signal
 
@@ -73,7 +75,7 @@ def wavelet(inputs: Inputs, taps: int, light: LightOperations) -> float:
 def modulate(inputs: Inputs) -> float:
     """Section 5: green from luminance, times albedo, plus emission."""
     green = 2 * 2 + 1 + 1
-    albedo = SAFE + 2 if inputs.divides_by_albedo else 0
+    albedo = SAFE + 2 + 2 if inputs.divides_by_albedo else 0
     emission = SAFE + 2 if inputs.emission else 0
     return green + 3 * (len(inputs.signals) - 1 + albedo + emission + 1)
 

@@ -71,11 +71,7 @@ class Settings(WaveletFilter):
         return Pass(
             "variance",
             "variance",
-            scalars={
-                "sigma_depth": self.sigma_depth,
-                "sigma_normal": self.sigma_normal,
-                "depth_slope_floor": self.depth_slope_floor,
-            },
+            scalars=self.surface_scalars,
             reads=(access(guide, taps={}), access(self.moments(inputs), taps={"length": HERE, "variance": HERE})),
             writes=(access(accumulated, "illumination", {"variance": HERE}),),
             operations=2 + len(inputs.signals),  # a choice by the length, and by whether anything was hit

@@ -87,8 +87,9 @@ class TemporalFilter(Filter):
         """The surface that a pixel shows; depth is 0 at a miss."""
         depth = Quantity("depth", stage="depth")
         id_ = (Quantity("id"),) if inputs.id else ()
+        albedo = (Quantity("albedo"),) if inputs.divides_by_albedo else ()
         normal = Quantity("normal", 3, format=Format.SNORM if self.half_guides else Format.FLOAT, stage="normal")
-        return Resource("guide", "guide", (depth, *id_, normal), Life.PAIR)
+        return Resource("guide", "guide", (depth, *id_, *albedo, normal), Life.PAIR)
 
     def color(self, inputs: Inputs, stage: str) -> Quantity:
         """Light divided by albedo."""
@@ -125,6 +126,7 @@ class TemporalFilter(Filter):
     def temporal_pass(self, inputs: Inputs, history: Resource, accumulated: Resource, *, alpha_moments: float) -> Pass:
         """Accumulation along motion: `history` of the previous frame and new light become `accumulated`."""
         guide, moments = self.guide(inputs), self.moments(inputs)
+        surface = [name for name in guide.names if name != "albedo"]  # textures change from pixel to pixel
         taps = footprint(2)
         return Pass(
             "temporal",
@@ -138,9 +140,9 @@ class TemporalFilter(Filter):
             per_frame=("frame_number",),
             reads=(
                 user("motion", channels=inputs.motion),
-                access(guide, taps=dict.fromkeys(guide.names, HERE) | {"depth": CROSS}),
+                access(guide, taps=dict.fromkeys(surface, HERE) | {"depth": CROSS}),
                 access(self.demodulated(inputs), "illumination"),
-                access(guide, taps=dict.fromkeys(guide.names, taps), previous=True),
+                access(guide, taps=dict.fromkeys(surface, taps), previous=True),
                 access(history, "history", {"color": taps}, previous=history.life is Life.PAIR),
                 access(moments, taps=dict.fromkeys(moments.names, taps), previous=True),
             ),

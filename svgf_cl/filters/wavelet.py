@@ -42,6 +42,16 @@ class WaveletFilter(TemporalFilter):
         reason="How sharply normals are told apart: the weight falls to 1/e at a cosine of 1 - 1/sigma_normal. 128, 7 "
         "degrees: for such angles the same as SVGF's cosine to the power of 128.",
     )
+    albedo_threshold: float = number(
+        1.75,
+        (0.0, 8.0),
+        unit="octaves",
+        reason="Light is mixed only between pixels whose albedos differ by at most so many factors of two, in every "
+        "channel. Light that albedo does not hold, such as a reflection on black paint, is far too bright or too dark "
+        "once it is multiplied by another albedo. 1.75, a factor of 3.4: under a coat tiles of any albedos come out "
+        "better than they came in, and most textures keep their neighbours. At 8 albedo does not count, as in the "
+        "papers.",
+    )
     depth_slope_floor: float = number(
         1e-3,
         (1e-6, 1.0),
@@ -75,24 +85,30 @@ class WaveletFilter(TemporalFilter):
         """What these settings decide when kernels are built."""
         return super().macros | {"FAST": int(self.precision == "fast"), "RADIUS": self.radius}
 
+    @property
+    def surface_scalars(self) -> dict[str, Number]:
+        """What tells surfaces apart, as kernels take it."""
+        names = ("sigma_depth", "sigma_normal", "albedo_threshold", "depth_slope_floor")
+        return {name: getattr(self, name) for name in names}
+
     def levels(
         self, inputs: Inputs, steps: Sequence[Resource], scalars: Mapping[str, Number], light: LightOperations
     ) -> Iterator[Pass]:
         """The passes from each of `steps` to the next; `scalars` beside those that all wavelet filters have."""
         near = grid(1)
+        guide = self.guide(inputs)
         for level, (source, target) in enumerate(pairwise(steps), start=1):
             step = 2 ** (level - 1)
             taps = grid(self.radius, step)
             # The variance is smoothed over the nearest neighbours too, and the depth's slope is taken from them.
             read = {name: taps | near if name == "variance" else taps for name in source.names}
+            surface = {name: taps | near if name == "depth" else taps for name in guide.names if name != "id"}
             yield Pass(
                 "atrous",
                 "atrous",
-                scalars={"step": step, "sigma_depth": self.sigma_depth, "sigma_normal": self.sigma_normal}
-                | dict(scalars)
-                | {"depth_slope_floor": self.depth_slope_floor},
+                scalars={"step": step, **self.surface_scalars, **scalars},
                 reads=(
-                    access(self.guide(inputs), taps={"depth": taps | near, "normal": taps}),
+                    access(guide, taps=surface),
                     access(source, "source", read),
                 ),
                 writes=(access(target, "target"),),

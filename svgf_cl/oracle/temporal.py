@@ -35,10 +35,10 @@ from svgf_cl.oracle.taps import (
 
 CHANNEL_MAX = 1e10
 DEPTH_RANGE = (1e-20, 1e20)
-ALBEDO_FLOOR = 0.001
+ALBEDO_FLOOR, CHANNEL_FLOOR = 0.02, 0.04  # absolute; of the greatest channel
 NORMAL_FLOOR = 1e-12  # of a normal's square
 # Whether kept as 16-bit floats.
-ILLUMINATION_MAX = {False: 1e13, True: 65504.0}
+ILLUMINATION_MAX = {False: 5e11, True: 65504.0}
 MOTION_MAX = 1e6
 NO_HISTORY = (-MOTION_MAX, -MOTION_MAX, 0.0)
 NEARER = float(np.float32(0.9999))
@@ -59,7 +59,7 @@ class Guides:
     depth : (H, W), > 0; 0 at a miss.
     motion : (H, W, 3), previous minus current x, y and depth.
     id : (H, W) integers, or None where the frame has none.
-    albedo : (H, W, 3), 0.001..1.
+    albedo : (H, W, 3), 0..1, or None where light is not divided by it.
     emission : (H, W, 3), not negative.
     """
 
@@ -67,8 +67,17 @@ class Guides:
     depth: Array
     motion: Array
     id: NDArray[np.integer] | None
-    albedo: Array
+    albedo: Array | None
     emission: Array
+
+    @property
+    def divisor(self) -> Array:
+        """albedo', which light is divided by: (H, W, 3), or 1 where there is no albedo."""
+        if self.albedo is None:
+            return np.ones(1)
+        greatest = self.albedo.max(axis=-1, keepdims=True)
+        divisor: Array = np.maximum(self.albedo, np.maximum(CHANNEL_FLOOR * greatest, ALBEDO_FLOOR))
+        return divisor
 
     @property
     def hit(self) -> Mask:
@@ -117,8 +126,9 @@ def demodulate(frame: Frame, *, half: bool = False) -> tuple[Array, Guides]:
     guides : Guides
     """
     given = {name: np.asarray(value, np.float64) for name, value in frame.present().items() if name != "id"}
-    albedo = given.get("albedo", np.ones((*frame.shape, 3)))
-    albedo = np.where(np.isnan(albedo), 1, np.clip(albedo, ALBEDO_FLOOR, 1))
+    albedo = given.get("albedo")
+    if albedo is not None:
+        albedo = np.where(np.isnan(albedo), 1, np.clip(albedo, 0, 1))
     emission = given.get("emission", np.zeros((*frame.shape, 3)))
     emission = np.maximum(known(emission), 0)
     normal, depth = safe_surface(given["normal"], given["depth"])
@@ -126,7 +136,7 @@ def demodulate(frame: Frame, *, half: bool = False) -> tuple[Array, Guides]:
 
     split = "direct" in given
     reflected = [known(given[name]) for name in ("direct", "indirect")] if split else [known(given["color"]) - emission]
-    return np.clip(np.stack(reflected) / albedo, 0, ILLUMINATION_MAX[half]), guides
+    return np.clip(np.stack(reflected) / guides.divisor, 0, ILLUMINATION_MAX[half]), guides
 
 
 def known(color: Array) -> Array:
@@ -232,7 +242,7 @@ def temporal(
 def modulate(illumination: Array, guides: Guides) -> Array:
     """Section 5: out = sum over signals of c * albedo' + emission', (H, W, 3)."""
     # Emission is added once, whatever the number of signals.
-    image: Array = illumination.sum(axis=0) * guides.albedo + guides.emission
+    image: Array = illumination.sum(axis=0) * guides.divisor + guides.emission
     return image
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from svgf_cl.filters.wavelet import WaveletFilter
 from svgf_cl.oracle.taps import Array, Offset, dot, shifted
@@ -12,8 +13,19 @@ from svgf_cl.oracle.temporal import Guides
 SPLINES = {2: {-2: 1 / 16, -1: 1 / 4, 0: 3 / 8, 1: 1 / 4, 2: 1 / 16}, 1: {-1: 1 / 4, 0: 1 / 2, 1: 1 / 4}}
 
 
+DARK = np.float32(0.004)  # albedos far below it look alike
+STEPS = 64  # in an octave
+
+
+def albedo_codes(albedo: Array) -> NDArray[np.int32]:
+    """Section 4: octaves from `DARK` to albedo + `DARK`, in whole 64ths, by a float's bits: (H, W, 3)."""
+    above = albedo.astype(np.float32) + DARK
+    codes: NDArray[np.int32] = (above.view(np.int32) - DARK.view(np.int32)) >> 17
+    return codes
+
+
 def surface_weight(guides: Guides, gradient: Array, offset: Offset, step: int, settings: WaveletFilter) -> Array:
-    """Section 4: w_z w_n for the tap q = p + step * offset, (H, W); 1 at the centre, 0 where p or q is a miss."""
+    """Section 4: w_z w_n w_a for the tap q = p + step * offset, (H, W); 1 at the centre, 0 where p or q is a miss."""
     dx, dy = offset
     y, x, inside = shifted(offset, guides.depth.shape, step)
     hits = inside & guides.hit & guides.hit[y, x]
@@ -23,4 +35,7 @@ def surface_weight(guides: Guides, gradient: Array, offset: Offset, step: int, s
     slope += settings.depth_slope_floor * guides.depth * max(abs(dx), abs(dy))
     w_z = np.exp(-np.abs(guides.depth - guides.depth[y, x]) / (step * np.where(hits, slope, 1)))
     w_n = np.exp(settings.sigma_normal * (dot(guides.normal, guides.normal[y, x]) - 1))
+    if guides.albedo is not None:
+        codes = albedo_codes(guides.albedo)
+        hits &= np.abs(codes - codes[y, x]).max(axis=-1) <= int(settings.albedo_threshold * STEPS)
     return np.where(hits, w_z * w_n, 0)
