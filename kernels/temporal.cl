@@ -1,6 +1,7 @@
 // Temporal accumulation: the running mean of illumination and of its luminance's mean and variance along motion.
 //
-//   p' = p + motion;  history = mean over the consistent taps of the 2x2 footprint at p', else of the 3x3 around it
+//   p' = p + motion;  history = mean over the consistent taps of the 2x2 footprint at p', else of the 3x3 around it;
+//   taps of another albedo count 1/64
 //   N = N_h + 1,  a = max(1 / N, alpha),  c = c_h + a (c - c_h)
 //   d = l(c) - M_h,  M = M_h + a d,  V = (1 - a) (V_h + a d^2)
 //
@@ -13,6 +14,7 @@
 #define NOWHERE (1 << 24)  // a position beyond every image
 #define SMOOTH 4           // pixels by which motion may differ within a vector that is read as a whole
 #define ENOUGH 0.01f       // sum of weights of a footprint from which it is a history
+#define OTHERS 0.015625f   // how much a tap of another albedo counts: alone it is a history still, as textures flicker
 
 // What a tap of the previous frame is held against. The position p' is kept as a whole pixel and a fraction of motion:
 // added up in float32 a fraction would lose bits to the column's number.
@@ -26,6 +28,9 @@ typedef struct {
 #if HAS_ID
     intv id;
 #endif
+#if HAS_ALBEDO
+    AlbedoRange albedo;
+#endif
 } Expected;
 
 // The previous frame at a tap.
@@ -33,6 +38,9 @@ typedef struct {
     floatv depth, normal[3], length, color[SIGNALS][3], mean[SIGNALS], variance[SIGNALS];
 #if HAS_ID
     intv id;
+#endif
+#if HAS_ALBEDO
+    intv albedo;
 #endif
 } Past;
 
@@ -42,7 +50,7 @@ typedef struct {
 } History;
 
 INLINE Expected expect(const int4 size, int x, int y, __global const float *motion, __global const float *guide,
-                       float depth_threshold) {
+                       float depth_threshold, float albedo_threshold) {
     const int here = at(size, x, y);
     const Color m = load_motion(size, x, y, motion);
     const floatv depth = load(SHARED_PLANE(size, guide, GUIDE_DEPTH) + here) + m.channel[2];
@@ -60,6 +68,9 @@ INLINE Expected expect(const int4 size, int x, int y, __global const float *moti
     UNROLLED_FOR(k, 3) e.normal[k] = load_normal(normal_plane(size, guide, k) + here);
 #if HAS_ID
     e.id = load_int((__global const int *)SHARED_PLANE(size, guide, GUIDE_ID) + here);
+#endif
+#if HAS_ALBEDO
+    e.albedo = albedo_range(load_int(albedo_plane(size, guide) + here), albedo_threshold);
 #endif
     return e;
 }
@@ -104,6 +115,9 @@ INLINE Past read_past(const int4 size, Places places, __global const float *guid
 #if HAS_ID
     p.id = fetch_int((__global const int *)SHARED_PLANE(size, guide, GUIDE_ID), places);
 #endif
+#if HAS_ALBEDO
+    p.albedo = fetch_int(albedo_plane(size, guide), places);
+#endif
     p.length = fetch_light(SHARED_PLANE(size, moments, MOMENTS_LENGTH), places);
     UNROLLED_FOR(s, SIGNALS) {
         UNROLLED_FOR(k, 3) p.color[s][k] = fetch_light(PLANE(size, history, ILLUMINATION_COLOR, s, k), places);
@@ -124,6 +138,14 @@ INLINE intv consistent(Expected e, Past tap, floatv dx, floatv dy, float normal_
     same &= tap.id == e.id;
 #endif
     return same;
+}
+
+// What a tap counts that would count `most`: light is not mixed between albedos where it can be helped.
+INLINE floatv tap_weight(Expected e, Past tap, floatv dx, floatv dy, float normal_threshold, floatv most) {
+#if HAS_ALBEDO
+    most = where(in_range(e.albedo, tap.albedo), most, OTHERS * most);
+#endif
+    return where(consistent(e, tap, dx, dy, normal_threshold), most, (floatv)(0.0f));
 }
 
 INLINE History no_history(void) {
@@ -169,7 +191,7 @@ INLINE History footprint(const int4 size, Expected e, Box box, float normal_thre
             const Past tap = read_past(size, beside(box.corner, i + j * size.z), guide, history, moments);
             const floatv dx = to_float(i - box.x) - e.fx, dy = to_float(j - box.y) - e.fy;
             const floatv bilinear = max(1.0f - fabs(dx), (floatv)(0.0f)) * max(1.0f - fabs(dy), (floatv)(0.0f));
-            add_past(&h, tap, where(consistent(e, tap, dx, dy, normal_threshold), bilinear, (floatv)(0.0f)));
+            add_past(&h, tap, tap_weight(e, tap, dx, dy, normal_threshold, bilinear));
         }
     }
     return h;
@@ -186,8 +208,8 @@ INLINE History surroundings(const int4 size, Expected e, floatv nx, floatv ny, B
             const intv across = i - box.x, down = j - box.y;
             const intv near = (across >= 0) & (across < 3) & (down >= 0) & (down < 3);
             const floatv dx = to_float(across - 1) + nx - e.fx, dy = to_float(down - 1) + ny - e.fy;
-            const intv same = consistent(e, tap, dx, dy, normal_threshold);
-            add_past(&h, tap, where(near & same, (floatv)(1.0f), (floatv)(0.0f)));
+            const floatv most = where(near, (floatv)(1.0f), (floatv)(0.0f));
+            add_past(&h, tap, tap_weight(e, tap, dx, dy, normal_threshold, most));
         }
     }
     return h;
@@ -195,15 +217,15 @@ INLINE History surroundings(const int4 size, Expected e, floatv nx, floatv ny, B
 
 // `accumulated` may lie where `illumination` does: a pixel of either is touched by its own work-item alone.
 KERNEL temporal(const int4 size, const float alpha_color, const float alpha_moments, const float depth_threshold,
-                const float normal_threshold, const int frame_number, __global const float *restrict motion,
-                __global const float *restrict guide, __global const light_t *illumination,
-                __global const float *restrict previous_guide, __global const light_t *restrict history,
-                __global const light_t *restrict previous_moments, __global light_t *accumulated,
-                __global light_t *restrict moments) {
+                const float normal_threshold, const float albedo_threshold, const int frame_number,
+                __global const float *restrict motion, __global const float *restrict guide,
+                __global const light_t *illumination, __global const float *restrict previous_guide,
+                __global const light_t *restrict history, __global const light_t *restrict previous_moments,
+                __global light_t *accumulated, __global light_t *restrict moments) {
     const int x = first_column(), y = row();
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
-    const Expected e = expect(size, x, y, motion, guide, depth_threshold);
+    const Expected e = expect(size, x, y, motion, guide, depth_threshold, albedo_threshold);
     const intv hit = load(SHARED_PLANE(size, guide, GUIDE_DEPTH) + here) > 0.0f;
 
     History h = no_history();

@@ -34,7 +34,7 @@ def temporal(inputs: Inputs) -> float:
     signals = len(inputs.signals)
     footprint = 2 * (1 + 2 + 2) + GRADIENT + 4  # clamp, floor and fraction per axis; tolerance of depth
     consistent = DOT + 1 + (4 + 2 + 1) + 1 + (1 if inputs.id else 0)  # normal; depth along the surface; hit; id
-    weight = 3 + 1
+    weight = 3 + 1 + (ALBEDO + 1 if inputs.divides_by_albedo else 0)
     tap = consistent + weight + 2 * (1 + 3 * signals) + signals * (2 + 3 + 2)  # N, c; M; V + (M - M_h)^2
     blend = signals * (3 * BLEND + BLEND + 1 + 4)  # c; M; 1 - a; V
     return footprint + 4 * tap + 4 + blend  # N, 1 / N, the two shares

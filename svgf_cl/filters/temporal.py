@@ -44,6 +44,16 @@ class TemporalFilter(Filter):
         reason="Reprojection: least cosine between the normals of pixel and tap. 0.9, 26 degrees, as much as a small "
         "ball's surface turns within a pixel or two.",
     )
+    albedo_threshold: float = number(
+        1.75,
+        (0.0, 8.0),
+        unit="octaves",
+        reason="Light is mixed only between pixels whose albedos differ by at most so many factors of two, in every "
+        "channel. Light that albedo does not hold, such as a reflection on black paint, is far too bright or too dark "
+        "once it is multiplied by another albedo. 1.75, a factor of 3.4: under a coat tiles of any albedos come out "
+        "better than they came in, and most textures keep their neighbours. At 8 albedo does not count, as in the "
+        "papers.",
+    )
     taa: bool = switch(
         False,
         reason="Temporal antialiasing after the filter; off, because a renderer often has its own. For radiance up to "
@@ -126,7 +136,6 @@ class TemporalFilter(Filter):
     def temporal_pass(self, inputs: Inputs, history: Resource, accumulated: Resource, *, alpha_moments: float) -> Pass:
         """Accumulation along motion: `history` of the previous frame and new light become `accumulated`."""
         guide, moments = self.guide(inputs), self.moments(inputs)
-        surface = [name for name in guide.names if name != "albedo"]  # textures change from pixel to pixel
         taps = footprint(2)
         return Pass(
             "temporal",
@@ -136,13 +145,14 @@ class TemporalFilter(Filter):
                 "alpha_moments": alpha_moments,
                 "depth_threshold": self.depth_threshold,
                 "normal_threshold": self.normal_threshold,
+                "albedo_threshold": self.albedo_threshold,
             },
             per_frame=("frame_number",),
             reads=(
                 user("motion", channels=inputs.motion),
-                access(guide, taps=dict.fromkeys(surface, HERE) | {"depth": CROSS}),
+                access(guide, taps=dict.fromkeys(guide.names, HERE) | {"depth": CROSS}),
                 access(self.demodulated(inputs), "illumination"),
-                access(guide, taps=dict.fromkeys(surface, taps), previous=True),
+                access(guide, taps=dict.fromkeys(guide.names, taps), previous=True),
                 access(history, "history", {"color": taps}, previous=history.life is Life.PAIR),
                 access(moments, taps=dict.fromkeys(moments.names, taps), previous=True),
             ),

@@ -42,16 +42,6 @@ class WaveletFilter(TemporalFilter):
         reason="How sharply normals are told apart: the weight falls to 1/e at a cosine of 1 - 1/sigma_normal. 128, 7 "
         "degrees: for such angles the same as SVGF's cosine to the power of 128.",
     )
-    albedo_threshold: float = number(
-        1.75,
-        (0.0, 8.0),
-        unit="octaves",
-        reason="Light is mixed only between pixels whose albedos differ by at most so many factors of two, in every "
-        "channel. Light that albedo does not hold, such as a reflection on black paint, is far too bright or too dark "
-        "once it is multiplied by another albedo. 1.75, a factor of 3.4: under a coat tiles of any albedos come out "
-        "better than they came in, and most textures keep their neighbours. At 8 albedo does not count, as in the "
-        "papers.",
-    )
     depth_slope_floor: float = number(
         1e-3,
         (1e-6, 1.0),

@@ -43,6 +43,9 @@ MOTION_MAX = 1e6
 NO_HISTORY = (-MOTION_MAX, -MOTION_MAX, 0.0)
 NEARER = float(np.float32(0.9999))
 HISTORY_WEIGHT = 0.01  # of the taps at the position itself, from which they are a history
+OTHERS_WEIGHT = 1 / 64  # of a tap of another albedo
+DARK = np.float32(0.004)  # albedos far below it look alike
+OCTAVE = 64  # codes
 HEADROOM = 1e-6  # of a tone below 1
 LENGTH_MAX = {False: 1024, True: 32}
 YCOCG_OF_RGB = np.array(((1 / 4, 1 / 2, 1 / 4), (1 / 2, 0, -1 / 2), (-1 / 4, 1 / 2, -1 / 4)))
@@ -178,6 +181,20 @@ def consistent(x: Indices, y: Indices, guides: Guides, previous: Guides, setting
     return same
 
 
+def alike(albedo: Array, other: Array, octaves: float) -> Mask:
+    """Section 1: whether albedos (..., 3) are at most so many octaves apart in every channel, as codes have it."""
+    off = np.abs(albedo_codes(albedo) - albedo_codes(other)).max(axis=-1)
+    same: Mask = off <= int(octaves * OCTAVE)
+    return same
+
+
+def albedo_codes(albedo: Array) -> NDArray[np.int32]:
+    """Section 1: octaves from `DARK` to albedo + `DARK`, in whole 64ths, by the bits of a float: (..., 3)."""
+    above = albedo.astype(np.float32) + DARK
+    codes: NDArray[np.int32] = (above.view(np.int32) - DARK.view(np.int32)) >> 17
+    return codes
+
+
 def reproject(guides: Guides, history: History, settings: TemporalFilter) -> tuple[Accumulated, Mask]:
     """Section 2: the history mean over the consistent taps, and where there is one, (H, W)."""
     position = reprojected(guides.motion)
@@ -185,6 +202,10 @@ def reproject(guides: Guides, history: History, settings: TemporalFilter) -> tup
     # 13 candidates: the bilinear four, and the nearest nine that stand in where those four weigh too little.
     x, y, b = (np.concatenate(pair) for pair in zip(bilinear_taps(position), nearest_taps(position), strict=True))
     b *= consistent(x, y, guides, history.guides, settings)
+    rows, columns, _ = locate(x, y, guides.depth.shape)
+    if guides.albedo is not None and history.guides.albedo is not None:
+        past_albedo = history.guides.albedo[rows, columns]
+        b *= np.where(alike(guides.albedo, past_albedo, settings.albedo_threshold), 1, OTHERS_WEIGHT)
     enough = b[:4].sum(axis=0) > HISTORY_WEIGHT
     b[:4] *= enough
     b[4:] *= ~enough
@@ -195,7 +216,6 @@ def reproject(guides: Guides, history: History, settings: TemporalFilter) -> tup
         mean: Array = np.einsum("thw,sthw...->shw...", b, taps)
         return mean
 
-    rows, columns, _ = locate(x, y, guides.depth.shape)
     past = history.accumulated
     mean = average(past.mean[:, rows, columns])
     deviation = past.mean[:, rows, columns] - mean[:, None]

@@ -3,25 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from svgf_cl.filters.wavelet import WaveletFilter
 from svgf_cl.oracle.taps import Array, Offset, dot, shifted
-from svgf_cl.oracle.temporal import Guides
+from svgf_cl.oracle.temporal import Guides, alike
 
 # By radius: of B3, and linear.
 SPLINES = {2: {-2: 1 / 16, -1: 1 / 4, 0: 3 / 8, 1: 1 / 4, 2: 1 / 16}, 1: {-1: 1 / 4, 0: 1 / 2, 1: 1 / 4}}
-
-
-DARK = np.float32(0.004)  # albedos far below it look alike
-STEPS = 64  # in an octave
-
-
-def albedo_codes(albedo: Array) -> NDArray[np.int32]:
-    """Section 4: octaves from `DARK` to albedo + `DARK`, in whole 64ths, by a float's bits: (H, W, 3)."""
-    above = albedo.astype(np.float32) + DARK
-    codes: NDArray[np.int32] = (above.view(np.int32) - DARK.view(np.int32)) >> 17
-    return codes
 
 
 def surface_weight(guides: Guides, gradient: Array, offset: Offset, step: int, settings: WaveletFilter) -> Array:
@@ -36,6 +24,5 @@ def surface_weight(guides: Guides, gradient: Array, offset: Offset, step: int, s
     w_z = np.exp(-np.abs(guides.depth - guides.depth[y, x]) / (step * np.where(hits, slope, 1)))
     w_n = np.exp(settings.sigma_normal * (dot(guides.normal, guides.normal[y, x]) - 1))
     if guides.albedo is not None:
-        codes = albedo_codes(guides.albedo)
-        hits &= np.abs(codes - codes[y, x]).max(axis=-1) <= int(settings.albedo_threshold * STEPS)
+        hits &= alike(guides.albedo, guides.albedo[y, x], settings.albedo_threshold)
     return np.where(hits, w_z * w_n, 0)
