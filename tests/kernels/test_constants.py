@@ -14,6 +14,10 @@ from svgf_cl.oracle import svgf, temporal, wavelet
 # By the kernels' name. Where there are two values the second is that of 16-bit floats (HALF_HISTORY), or of 3x3 taps.
 EXPECTED = {
     "MIN_ALBEDO": (temporal.ALBEDO_FLOOR,),
+    "MIN_CHANNEL": (temporal.CHANNEL_FLOOR,),
+    "DARK": (temporal.DARK,),
+    "STEPS": (temporal.OCTAVE,),
+    "OTHERS": (temporal.OTHERS_WEIGHT,),
     "MAX_CHANNEL": (temporal.CHANNEL_MAX,),
     "MIN_DEPTH": (temporal.DEPTH_RANGE[0],),
     "MAX_DEPTH": (temporal.DEPTH_RANGE[1],),
