@@ -1,4 +1,4 @@
-"""Traced scenes in which light is reflected that albedo does not hold: coats over saturated paint, metal, dark cloth."""
+"""Traced scenes whose albedo does not hold all light: coats over saturated paint, metal, dark cloth."""
 
 from __future__ import annotations
 
