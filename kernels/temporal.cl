@@ -71,6 +71,8 @@ INLINE Expected expect(const int4 size, int x, int y, __global const float *moti
 #endif
 #if HAS_ALBEDO
     e.albedo = albedo_range(load_int(albedo_plane(size, guide) + here), albedo_threshold);
+#else
+    (void)albedo_threshold;
 #endif
     return e;
 }
