@@ -29,18 +29,18 @@ def test_every_pass_has_a_cost(signals: tuple[Signal, ...], motion: int, optiona
 
 def test_bytes_are_planes_read_and_written_once() -> None:
     found = costs(INPUTS, Settings())
-    assert found["demodulate"].bytes == 4 * ((3 + 3 + 3 + 1 + 1) + (5 + 3))  # color albedo normal depth id; guide c
-    assert found["temporal"].bytes == 4 * ((3 + 5 + 3 + 5 + 3 + 3) + (3 + 3))
+    assert found["demodulate"].bytes == 4 * ((3 + 3 + 3 + 1 + 1) + (6 + 3))  # color albedo normal depth id; guide c
+    assert found["temporal"].bytes == 4 * ((3 + 6 + 3 + 6 + 3 + 3) + (3 + 3))
     assert found["variance"].bytes == 4 * (2 + 1)  # length and variance; variance
-    assert found["atrous 1"].bytes == found["atrous 5"].bytes == 4 * ((4 + 4) + 4)  # normal depth c Var; c Var
+    assert found["atrous 1"].bytes == found["atrous 5"].bytes == 4 * ((5 + 4) + 4)  # normal depth albedo c Var; c Var
     assert found["modulate"].bytes == 4 * ((3 + 3) + 3)
 
 
 def test_what_a_frame_lacks_costs_nothing() -> None:
     less = costs(replace(INPUTS, albedo=False, id=False, motion=2))
     more = costs(INPUTS)
-    assert more["demodulate"].bytes - less["demodulate"].bytes == 4 * (3 + 1 + 1)  # albedo id; id
-    assert more["temporal"].bytes - less["temporal"].bytes == 4 * (1 + 1 + 1)  # id twice, motion's depth
+    assert more["demodulate"].bytes - less["demodulate"].bytes == 4 * (3 + 1 + 1 + 1)  # albedo id; both in the guide
+    assert more["temporal"].bytes - less["temporal"].bytes == 4 * (2 * 2 + 1)  # id and albedo twice, motion's depth
     assert all(more[name].flops >= less[name].flops for name in more)
 
 
@@ -78,28 +78,28 @@ def test_without_neighbours_each_plane_is_loaded_once() -> None:
 
 @pytest.mark.parametrize(("taps", "columns"), [("3x3", 3), ("5x5", 5)])
 def test_taps_in_the_own_column_are_aligned(taps: str, columns: int) -> None:
-    """Normal, depth, colour and variance at every tap, depth and variance around the pixel too."""
+    """Normal, depth, albedo, colour and variance at every tap, depth and variance around the pixel too."""
     settings = Settings(taps=taps)
     near = 2 * 3  # in each column, two planes
     assert loaded("atrous 3", settings=settings) == Loads(
-        4 * (8 * columns + near - 2), 4 * (8 * columns * (columns - 1) + 2 * near)
+        4 * (9 * columns + near - 2), 4 * (9 * columns * (columns - 1) + 2 * near)
     )
 
 
 def test_the_nearest_taps_are_the_nearest_neighbours() -> None:
-    assert loaded("atrous 1", settings=Settings(taps="3x3")) == Loads(4 * 8 * 3, 4 * 8 * 6)
+    assert loaded("atrous 1", settings=Settings(taps="3x3")) == Loads(4 * 9 * 3, 4 * 9 * 6)
 
 
 def test_taps_a_whole_vector_apart_are_aligned() -> None:
     assert loaded("atrous 5", settings=Settings(taps="3x3")).offset == 4 * 2 * 6, "the pixel's neighbours are left"
     wide = [loaded(f"atrous {level}", settings=Settings(taps="5x5")).offset for level in (3, 4)]
-    assert wide[0] - wide[1] == 4 * 8 * 2 * 5, "its outer columns"
+    assert wide[0] - wide[1] == 4 * 9 * 2 * 5, "its outer columns"
 
 
 def test_history_lies_anywhere() -> None:
     temporal = loaded("temporal")
-    assert temporal.offset == 4 * (2 + 4 * (5 + 3 + 3))  # slope; guide, colour and moments
-    assert temporal.aligned == 4 * (3 + 5 + 2 + 3)  # motion, guide, slope, colour
+    assert temporal.offset == 4 * (2 + 4 * (6 + 3 + 3))  # slope; guide, colour and moments
+    assert temporal.aligned == 4 * (3 + 6 + 2 + 3)  # motion, guide, slope, colour
     assert loaded("taa").offset == 4 * (6 * (1 + 3) + 16 * 3)
 
 

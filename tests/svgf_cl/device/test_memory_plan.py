@@ -79,10 +79,10 @@ def test_history_is_never_overwritten_before_it_is_read(pipeline: Pipeline) -> N
 @pytest.mark.parametrize(
     ("chosen", "megabytes"),
     [
-        ({}, 200),
-        ({"half_guides": True}, 191),
-        ({"half_history": True}, 146),
-        ({"half_guides": True, "half_history": True}, 119),
+        ({}, 218),
+        ({"half_guides": True}, 209),
+        ({"half_history": True}, 164),
+        ({"half_guides": True, "half_history": True}, 137),
     ],
     ids=str,
 )

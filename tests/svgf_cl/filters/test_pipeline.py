@@ -96,9 +96,9 @@ class TestPipeline:
     @pytest.mark.parametrize(
         ("name", "chosen", "expected"),
         [
-            ("guide", {}, Planes(5)),
-            ("guide", {"half_guides": True}, Planes(2, 3)),
-            ("guide", {"half_history": True}, Planes(5)),
+            ("guide", {}, Planes(6)),
+            ("guide", {"half_guides": True}, Planes(3, 3)),
+            ("guide", {"half_history": True}, Planes(6)),
             ("level_3", {}, Planes(8)),
             ("level_3", {"half_history": True}, Planes(0, 8)),
             ("moments", {"half_history": True}, Planes(0, 5)),
