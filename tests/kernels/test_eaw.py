@@ -18,7 +18,7 @@ from svgf_cl.oracle.temporal import demodulate
 from svgf_cl.oracle.wavelet import surface_weight
 from tests import denoising
 from tests.frames import SHAPE, SPLIT, bumpy, bumpy_sequence, noise, only, wall
-from tests.oracle import EAW_CASES, EAW_TOLERANCES, assert_case_follows_oracle, measured
+from tests.oracle import EAW_CASES, TOLERANCES, assert_case_follows_oracle, measured
 
 SPLINES = {"5x5": np.array((1 / 16, 1 / 4, 3 / 8, 1 / 4, 1 / 16)), "3x3": np.array((1 / 4, 1 / 2, 1 / 4))}
 LEFT = (np.arange(SHAPE[1]) < 17)[:, None]
@@ -31,12 +31,12 @@ feed = partial(denoising.feed, kind=Eaw)
 @pytest.mark.parametrize("case", EAW_CASES)
 def test_every_kernel_follows_the_oracle(case: str) -> None:
     """All of them: SVGF's are built with other planes, and its stages are held against another history."""
-    assert_case_follows_oracle(EAW_CASES[case], *EAW_TOLERANCES)
+    assert_case_follows_oracle(EAW_CASES[case], *TOLERANCES)
 
 
 def test_every_stage_has_a_tolerance() -> None:
     stages = {name for case in EAW_CASES.values() for name in measured(case)}
-    assert stages - {f"level_{level}" for level in LEVELS} <= set(EAW_TOLERANCES)
+    assert stages - {f"level_{level}" for level in LEVELS} <= set(TOLERANCES)
 
 
 # Root-mean-square error over all pixels, relative to the picture's mean; about three times what was measured.
@@ -143,7 +143,7 @@ def test_tolerating_all_it_is_a_blur_weighted_by_surface(taps: str, spline: np.n
         color, total = color + w * light[0, y, x], total + w
     expected = np.where(guides.hit[..., None], color / np.where(total > 0, total, 1), light[0])
     off = np.abs(den.stage("level_1")[0] - expected)
-    assert (off <= EAW_TOLERANCES["level"] * expected.max(axis=-1, keepdims=True)).all()
+    assert (off <= TOLERANCES["level"] * expected.max(axis=-1, keepdims=True)).all()
 
 
 @pytest.mark.parametrize("exposure", [2.0**-8, 2.0**8])

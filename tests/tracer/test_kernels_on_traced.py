@@ -12,7 +12,7 @@ from svgf_cl.oracle.svgf import Oracle
 from tests.frames import FULL, SPLIT
 from tests.kernels import test_eaw
 from tests.kernels.test_storage import BOUNDS, error_to_the_oracle
-from tests.oracle import EAW_TOLERANCES, Case, assert_case_follows_oracle
+from tests.oracle import TOLERANCES, Case, assert_case_follows_oracle
 from tests.svgf_cl.test_denoiser import assert_alike
 from tests.tracer.frames import traced_sequence
 
@@ -36,7 +36,7 @@ def test_follows_the_oracle(case: str, kernel: str) -> None:
 
 def test_eaw_follows_the_oracle() -> None:
     case = Case(partial(traced_sequence, SPLIT), Eaw(taa=True, taps="5x5"))
-    assert_case_follows_oracle(case, *EAW_TOLERANCES)
+    assert_case_follows_oracle(case, *TOLERANCES)
 
 
 @pytest.mark.parametrize(("choice", "bound"), test_eaw.BOUNDS, ids=["halves", "fast", "halves and fast"])
