@@ -1,6 +1,6 @@
-"""Runs the tests on every OpenCL implementation, each in a process of its own, then measures every kernel on all of them
-against the oracle: `make test-all`. With ``--brief``, as in CI, all tests run on PoCL, elsewhere those of every kernel,
-and nothing is measured: the tests hold every error to its tolerance.
+"""Runs the tests on every OpenCL implementation, each in a process of its own, then measures every kernel on all of
+them against the oracle: `make test-all`. With ``--brief``, as in CI, all tests run on PoCL, elsewhere those of every
+kernel, and nothing is measured: the tests hold every error to its tolerance.
 """
 
 from __future__ import annotations
