@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from svgf_cl.filters.temporal import TemporalFilter
 from svgf_cl.frame import Frame, Shape
+from svgf_cl.oracle.albedo import alike, divisor
 from svgf_cl.oracle.taps import (
     Array,
     Indices,
@@ -35,7 +36,6 @@ from svgf_cl.oracle.taps import (
 
 CHANNEL_MAX = 1e10
 DEPTH_RANGE = (1e-20, 1e20)
-ALBEDO_FLOOR, CHANNEL_FLOOR = 0.02, 0.04  # absolute; of the greatest channel
 NORMAL_FLOOR = 1e-12  # of a normal's square
 # Whether kept as 16-bit floats.
 ILLUMINATION_MAX = {False: 5e11, True: 65504.0}
@@ -44,8 +44,6 @@ NO_HISTORY = (-MOTION_MAX, -MOTION_MAX, 0.0)
 NEARER = float(np.float32(0.9999))
 HISTORY_WEIGHT = 0.01  # of the taps at the position itself, from which they are a history
 OTHERS_WEIGHT = 1 / 64  # of a tap of another albedo
-DARK = np.float32(0.004)  # albedos far below it look alike
-OCTAVE = 64  # codes
 HEADROOM = 1e-6  # of a tone below 1
 LENGTH_MAX = {False: 1024, True: 32}
 YCOCG_OF_RGB = np.array(((1 / 4, 1 / 2, 1 / 4), (1 / 2, 0, -1 / 2), (-1 / 4, 1 / 2, -1 / 4)))
@@ -76,11 +74,7 @@ class Guides:
     @property
     def divisor(self) -> Array:
         """albedo', which light is divided by: (H, W, 3), or 1 where there is no albedo."""
-        if self.albedo is None:
-            return np.ones(1)
-        greatest = self.albedo.max(axis=-1, keepdims=True)
-        divisor: Array = np.maximum(self.albedo, np.maximum(CHANNEL_FLOOR * greatest, ALBEDO_FLOOR))
-        return divisor
+        return np.ones(1) if self.albedo is None else divisor(self.albedo)
 
     @property
     def hit(self) -> Mask:
@@ -179,20 +173,6 @@ def consistent(x: Indices, y: Indices, guides: Guides, previous: Guides, setting
     if guides.id is not None and previous.id is not None:
         same &= guides.id == previous.id[rows, columns]
     return same
-
-
-def alike(albedo: Array, other: Array, octaves: float) -> Mask:
-    """Section 1: whether albedos (..., 3) are at most so many octaves apart in every channel, as codes have it."""
-    off = np.abs(albedo_codes(albedo) - albedo_codes(other)).max(axis=-1)
-    same: Mask = off <= int(octaves * OCTAVE)
-    return same
-
-
-def albedo_codes(albedo: Array) -> NDArray[np.int32]:
-    """Section 1: octaves from `DARK` to albedo + `DARK`, in whole 64ths, by the bits of a float: (..., 3)."""
-    above = albedo.astype(np.float32) + DARK
-    codes: NDArray[np.int32] = (above.view(np.int32) - DARK.view(np.int32)) >> 17
-    return codes
 
 
 def reproject(guides: Guides, history: History, settings: TemporalFilter) -> tuple[Accumulated, Mask]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from svgf_cl.filters.wavelet import WaveletFilter
+from svgf_cl.oracle.albedo import alike
 from svgf_cl.oracle.taps import Array, Offset, dot, shifted
-from svgf_cl.oracle.temporal import Guides, alike
+from svgf_cl.oracle.temporal import Guides
 
 # By radius: of B3, and linear.
 SPLINES = {2: {-2: 1 / 16, -1: 1 / 4, 0: 3 / 8, 1: 1 / 4, 2: 1 / 16}, 1: {-1: 1 / 4, 0: 1 / 2, 1: 1 / 4}}

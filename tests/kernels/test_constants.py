@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from svgf_cl.filters.formats import HALF_MAX
-from svgf_cl.oracle import svgf, temporal, wavelet
+from svgf_cl.oracle import albedo, svgf, temporal, wavelet
 
 # By the kernels' name. Where there are two values the second is that of 16-bit floats (HALF_HISTORY), or of 3x3 taps.
 EXPECTED = {
-    "MIN_ALBEDO": (temporal.ALBEDO_FLOOR,),
-    "MIN_CHANNEL": (temporal.CHANNEL_FLOOR,),
-    "DARK": (temporal.DARK,),
-    "STEPS": (temporal.OCTAVE,),
+    "MIN_ALBEDO": (albedo.ALBEDO_FLOOR,),
+    "MIN_CHANNEL": (albedo.CHANNEL_FLOOR,),
+    "DARK": (albedo.DARK,),
+    "STEPS": (albedo.OCTAVE,),
     "OTHERS": (temporal.OTHERS_WEIGHT,),
     "MAX_CHANNEL": (temporal.CHANNEL_MAX,),
     "MIN_DEPTH": (temporal.DEPTH_RANGE[0],),
