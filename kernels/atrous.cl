@@ -171,7 +171,7 @@ KERNEL atrous(const int4 size, const int step, const float sigma_depth, const fl
 #pragma unroll
         for (int dx = -RADIUS; dx <= RADIUS; ++dx) {
             if (dy == 0 && dx <= 0) continue;  // the other half of each pair, and the centre
-            const floatv scale = depth_scale(centre.surface, dx, dy);
+            const floatv scale = depth_scale(centre.surface.facet, dx, dy);
             const float log2_h = log2_spline(dx < 0 ? -dx : dx) + log2_spline(dy);
             const int offset = step * (dy * size.z + dx);
             add_light(sums, level, centre, scale, log2_h, here + offset);

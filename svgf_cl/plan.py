@@ -134,7 +134,7 @@ class Plan:
     def read(self, name: str) -> np.ndarray:
         """A stage of the last frame, ([signals,] H, W[, channels]) float32; errors as by `raw`."""
         stage = self.stages[name]
-        planes = self._at.layout.crop(self.raw(name))
+        planes = self._at.layout.every(stage.resource.spacing).crop(self.raw(name))
         return stage.image(planes)
 
     def raw(self, name: str) -> np.ndarray:
@@ -174,9 +174,12 @@ class Plan:
         defines = {"VW": at.tuning.vector_width, **self.pipeline.defines}
         kernel = cl.Kernel(programs.build(at.queue.context, at.queue.device, entry.source, defines), entry.kernel)
         own = {each.argument: self._buffers[each.of] for each in entry.accesses if isinstance(each.of, Buffer)}
-        fixed: dict[str, Argument] = {"size": at.layout.size, **scalar_arguments(entry), **constants, **own}
+        layouts = zip(entry.sizes, (at.layout, at.layout.every(entry.coarse_spacing)), strict=False)
+        sizes = {name: layout.size for name, layout in layouts}
+        fixed: dict[str, Argument] = {**sizes, **scalar_arguments(entry), **constants, **own}
         work_group = fitting(at.tuning.work_group, kernel, at.queue.device)
-        work_items = at.layout.work_items(at.tuning.vector_width, work_group, entry.row_step)
+        written = at.layout.every(entry.spacing)
+        work_items = written.work_items(at.tuning.vector_width, work_group, entry.row_step)
         return Launch(entry, kernel, fixed, work_items, work_group)
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from svgf_cl.device.layout import WIDEST_VECTOR
-from svgf_cl.filters.pipeline import Pass, Use
+from svgf_cl.filters.pipeline import Pass, Use, spacing_of
 
 
 @dataclass(frozen=True)
@@ -56,9 +56,10 @@ class Cost:
 
 def cost(entry: Pass) -> Cost:
     """What a pass costs per pixel."""
-    moved = sum(use.quantity.nbytes for each in entry.accesses for use in each.uses)
+    moved = sum(use.quantity.nbytes / spacing_of(each) ** 2 for each in entry.accesses for use in each.uses)
     loaded = sum((loads(use) for each in entry.reads for use in each.uses), Loads())
-    return Cost(moved, loaded, entry.operations)
+    share = 1 / entry.spacing**2  # of the image's pixels, which it writes
+    return Cost(moved, loaded * share, entry.operations * share)
 
 
 def loads(use: Use) -> Loads:

@@ -35,7 +35,7 @@ class Buffers:
         self._queue, self._layout = queue, layout
         self._slot_of = {buffer: number for number, slot in enumerate(slots) for buffer in slot.buffers}
         self._last_in_slot = {slot.buffers[-1] for slot in slots}
-        sizes = [layout.nbytes(slot.planes.depth) for slot in slots]
+        sizes = [layout.every(slot.spacing).nbytes(slot.planes.depth) for slot in slots]
         kept = {buffer: sizes[number] for buffer, number in self._slot_of.items() if copies and not buffer.previous}
         needed = sum(sizes) + sum(kept.values())
         check_room(queue.device, needed)
@@ -61,7 +61,8 @@ class Buffers:
         for resource in resources:
             for quantity in resource.quantities:
                 if quantity.unknown is not None:
-                    begin, size = (self._layout.nbytes(8 * n) for n in (resource.begin(quantity.name), quantity.nbytes))
+                    layout = self._layout.every(resource.spacing)
+                    begin, size = (layout.nbytes(8 * n) for n in (resource.begin(quantity.name), quantity.nbytes))
                     value = quantity.format.encoded(quantity.unknown)
                     cl.enqueue_fill_buffer(self._queue, self[history_of(resource)], value, begin, size)
 
@@ -69,7 +70,7 @@ class Buffers:
         """Have the next frame find the past that it would find in `other`, which has these resources too."""
         for resource in resources:
             source, target = other[Buffer(resource)], self[Buffer(resource)]
-            nbytes = self._layout.nbytes(resource.planes.depth)
+            nbytes = self._layout.every(resource.spacing).nbytes(resource.planes.depth)
             cl.enqueue_copy(self._queue, target, source, byte_count=nbytes)
 
     def copy_aside(self, buffer: Buffer) -> None:

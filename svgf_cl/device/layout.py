@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -32,6 +32,10 @@ class Layout:
         """Elements from one row to the next."""
         aligned = rounded_up(self.width + 2 * HALO, self.row_alignment)
         return aligned if aligned % PAGE else aligned + self.row_alignment
+
+    def every(self, spacing: int) -> Layout:
+        """The layout of every so many pixels of every so many rows, from the first on."""
+        return replace(self, height=-(-self.height // spacing), width=-(-self.width // spacing))
 
     @property
     def rows(self) -> int:

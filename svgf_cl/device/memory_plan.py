@@ -30,8 +30,15 @@ class Slot:
     planes: Planes
     last: int
 
+    @property
+    def spacing(self) -> int:
+        """Of its buffers' pixels, the same for all."""
+        return self.buffers[0].resource.spacing
+
     def takes(self, buffer: Buffer, first: int) -> bool:
         """Whether a buffer that pass number `first` begins to write may come next."""
+        if self.spacing != buffer.resource.spacing:
+            return False
         in_place = self.last == first and self.buffers[-1].resource.name == buffer.resource.over
         return (self.last < first or in_place) and not self.planes.over(buffer.resource.planes).is_mixed
 

@@ -33,6 +33,7 @@ HEADERS = (
     "albedo.clh",
     "interleaved.clh",
     "surface.clh",
+    "reprojection.clh",
 )
 
 # No fast-math: it would allow the compiler to drop the guards against NaN and infinity. Weights too small to count are

@@ -90,6 +90,8 @@ class Resource:
     life : Life
     over : str
         Name of a buffer that it may be written over, as it is made of that one pixel by pixel.
+    spacing : int
+        Pixels of the image from one of its own to the next, along a row and down; 2 holds every second one.
     """
 
     name: str
@@ -97,6 +99,7 @@ class Resource:
     quantities: tuple[Quantity, ...]
     life: Life = Life.SCRATCH
     over: str = ""
+    spacing: int = 1
 
     def __post_init__(self) -> None:
         sizes = [quantity.format.nbytes for quantity in self.quantities]
@@ -197,11 +200,17 @@ def access(
     return Access(argument or usual, Buffer(resource, previous), uses)
 
 
+def spacing_of(access: Access) -> int:
+    """Pixels from one to the next of what is accessed."""
+    return access.of.resource.spacing if isinstance(access.of, Buffer) else 1
+
+
 @dataclass(frozen=True)
 class Pass:
     """One kernel launch.
 
-    Its arguments are the image's size, then what the fields below name, in their order.
+    Its arguments are the image's size, that of its coarse buffers if it has any, then what the fields below name, in
+    their order.
 
     Parameters
     ----------
@@ -217,7 +226,7 @@ class Pass:
         Constants in device memory, such as a network's weights.
     reads, writes : tuple of Access
     operations : float
-        Floating-point operations a pixel, counted from the equations (`svgf_cl.filters.operations`).
+        Floating-point operations a pixel that it writes, counted from the equations (`svgf_cl.filters.operations`).
     level : int, optional
         Which of several like it, from 1.
     row_step : int
@@ -238,6 +247,8 @@ class Pass:
     def __post_init__(self) -> None:
         if len(set(self.arguments)) < len(self.arguments):
             raise ValueError(f"{self.label}: expected arguments of different names, got {', '.join(self.arguments)}")
+        if len({spacing_of(each) for each in self.writes}) > 1 or len({*self._spacings} - {1}) > 1:
+            raise ValueError(f"{self.label}: expected to write every pixel or every so many, got {self._spacings}")
         kept = {name: np.array(values, order="C") for name, values in self.arrays.items()}  # apart from the owner's
         for values in kept.values():
             values.flags.writeable = False
@@ -259,9 +270,28 @@ class Pass:
         return (*self.reads, *self.writes)
 
     @property
+    def spacing(self) -> int:
+        """Of the pixels that it writes."""
+        return spacing_of(self.writes[0])
+
+    @property
+    def coarse_spacing(self) -> int:
+        """Of its buffers that do not hold every pixel; 1 where all do."""
+        return max(self._spacings)
+
+    @property
+    def _spacings(self) -> list[int]:
+        return [1, *map(spacing_of, self.accesses)]
+
+    @property
+    def sizes(self) -> tuple[str, ...]:
+        """The kernel's names for the layouts of its buffers."""
+        return ("size",) if self.coarse_spacing == 1 else ("size", "coarse_size")
+
+    @property
     def arguments(self) -> tuple[str, ...]:
         """The kernel's names for its arguments, in order."""
-        return ("size", *self.scalars, *self.per_frame, *self.arrays, *(each.argument for each in self.accesses))
+        return (*self.sizes, *self.scalars, *self.per_frame, *self.arrays, *(each.argument for each in self.accesses))
 
 
 @dataclass(frozen=True)
