@@ -32,6 +32,9 @@ typedef struct {
     float sigma;  // of light
     __global const float *guide;
     __global const light_t *source;
+#if GUIDED_BY_PAST
+    __global const float *guidance;
+#endif
 } Level;
 
 // How light is told apart: `light_at` is what there is of a signal's at a pixel, and `light_exponent` adds to the
@@ -45,6 +48,16 @@ typedef struct {
 typedef struct {
     floatv luminance, scale;
 } Light;
+
+// What light is told apart by, at pixel `i`.
+INLINE floatv compared(Level level, int s, floatv luminance, int i) {
+#if GUIDED_BY_PAST
+    return 0.5f * (luminance + load(PLANE(level.size, level.guidance, GUIDANCE_LUMINANCE, s, 0) + i));
+#else
+    (void)level, (void)s, (void)i;
+    return luminance;
+#endif
+}
 
 // 3x3 Gaussian of the variance over hits, a miss has no variance to give.
 INLINE floatv smooth_variance(const int4 size, int here, __global const float *depth,
@@ -67,7 +80,8 @@ INLINE floatv smooth_variance(const int4 size, int here, __global const float *d
 INLINE Light light_at(Level level, int s, int here) {
     __global const float *depth = SHARED_PLANE(level.size, level.guide, GUIDE_DEPTH);
     __global const light_t *variance = PLANE(level.size, level.source, ILLUMINATION_VARIANCE, s, 0);
-    const floatv l = load_light(PLANE(level.size, level.source, ILLUMINATION_COLOR, s, LIGHT_LUMINANCE) + here);
+    const floatv own = load_light(PLANE(level.size, level.source, ILLUMINATION_COLOR, s, LIGHT_LUMINANCE) + here);
+    const floatv l = compared(level, s, own, here);
     const floatv deviation = sqrt(smooth_variance(level.size, here, depth, variance));
     Light light;
     light.luminance = l;
@@ -75,8 +89,8 @@ INLINE Light light_at(Level level, int s, int here) {
     return light;
 }
 
-INLINE floatv light_exponent(floatv e, Light light, const floatv *color) {
-    return e + fabs(light.luminance - color[LIGHT_LUMINANCE]) * light.scale;
+INLINE floatv light_exponent(floatv e, Light light, const floatv *color, Level level, int s, int tap) {
+    return e + fabs(light.luminance - compared(level, s, color[LIGHT_LUMINANCE], tap)) * light.scale;
 }
 #else
 #define SIGMA_LIGHT sigma_color
@@ -97,7 +111,8 @@ INLINE Light light_at(Level level, int s, int here) {
     return light;
 }
 
-INLINE floatv light_exponent(floatv e, Light light, const floatv *color) {
+INLINE floatv light_exponent(floatv e, Light light, const floatv *color, Level level, int s, int tap) {
+    (void)level, (void)s, (void)tap;
     floatv off[3];
     UNROLLED_FOR(k, 3) off[k] = light.color[k] - color[k];
     const floatv r = off[LIGHT_RED], b = off[LIGHT_BLUE], g = green(r, off[LIGHT_LUMINANCE], b);
@@ -121,7 +136,7 @@ INLINE void add_light(Sum *sums, Level level, Centre centre, floatv scale, float
     UNROLLED_FOR(s, SIGNALS) {
         floatv color[3];
         UNROLLED_FOR(k, 3) color[k] = load_light(PLANE(level.size, level.source, ILLUMINATION_COLOR, s, k) + tap);
-        const floatv w = weight(light_exponent(e, centre.light[s], color));
+        const floatv w = weight(light_exponent(e, centre.light[s], color, level, s, tap));
         UNROLLED_FOR(k, 3) sums[s].color[k] += w * color[k];
         UNROLLED_FOR(k, ILLUMINATION_VARIANCE_CHANNELS) {
             const floatv variance = load_variance(PLANE(level.size, level.source, ILLUMINATION_VARIANCE, s, k) + tap);
@@ -142,11 +157,22 @@ INLINE int interleaved_row(int height, int step) {
 KERNEL atrous(const int4 size, const int step, const float sigma_depth, const float sigma_normal,
               const float albedo_threshold, const float depth_slope_floor, const float SIGMA_LIGHT,
               __global const float *restrict guide, __global const light_t *restrict source,
+#if GUIDED_BY_PAST
+              __global const float *restrict guidance,
+#endif
               __global light_t *restrict target) {
     const int x = first_column(), y = interleaved_row(size.y, step);
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
-    const Level level = {size, step, SIGMA_LIGHT, guide, source};
+    Level level;
+    level.size = size;
+    level.step = step;
+    level.sigma = SIGMA_LIGHT;
+    level.guide = guide;
+    level.source = source;
+#if GUIDED_BY_PAST
+    level.guidance = guidance;
+#endif
 
     Centre centre;
     centre.surface =

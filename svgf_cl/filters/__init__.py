@@ -2,9 +2,10 @@
 
 from svgf_cl.filters.eaw import Eaw
 from svgf_cl.filters.filter import Filter
+from svgf_cl.filters.kalman import Kalman
 from svgf_cl.filters.svgf import Settings
 
-__all__ = ["FILTERS", "Eaw", "Settings"]
+__all__ = ["FILTERS", "Eaw", "Kalman", "Settings"]
 
 # By the name that the command line and the oracles know them by.
-FILTERS: dict[str, type[Filter]] = {each.name: each for each in (Settings, Eaw)}
+FILTERS: dict[str, type[Filter]] = {each.name: each for each in (Settings, Eaw, Kalman)}

@@ -53,4 +53,4 @@ class Eaw(WaveletFilter):
             ),
             *self.last_passes(inputs, steps[-1]),
         )
-        return Pipeline(passes, inputs.defines | self.macros | {"GUIDED_BY_VARIANCE": 0})
+        return Pipeline(passes, inputs.defines | self.macros | {"GUIDED_BY_VARIANCE": 0, "GUIDED_BY_PAST": 0})

@@ -56,7 +56,7 @@ class Settings(WaveletFilter):
             ),
             *self.last_passes(inputs, steps[-1]),
         )
-        return Pipeline(passes, inputs.defines | self.macros | {"GUIDED_BY_VARIANCE": 1})
+        return Pipeline(passes, inputs.defines | self.macros | {"GUIDED_BY_VARIANCE": 1, "GUIDED_BY_PAST": 0})
 
     def illumination(
         self, inputs: Inputs, name: str, life: Life = Life.SCRATCH, *, variance: str = "", over: str = ""

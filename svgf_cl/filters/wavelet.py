@@ -82,16 +82,24 @@ class WaveletFilter(TemporalFilter):
         return {name: getattr(self, name) for name in names}
 
     def levels(
-        self, inputs: Inputs, steps: Sequence[Resource], scalars: Mapping[str, Number], light: LightOperations
+        self,
+        inputs: Inputs,
+        steps: Sequence[Resource],
+        scalars: Mapping[str, Number],
+        light: LightOperations,
+        guidance: Sequence[Resource] = (),
     ) -> Iterator[Pass]:
-        """The passes from each of `steps` to the next; `scalars` beside those that all wavelet filters have."""
+        """The passes from each of `steps` to the next; `scalars` beside those that all wavelet filters have.
+
+        `guidance`: what each level compares light by, in place of the light alone.
+        """
         near = grid(1)
         guide = self.guide(inputs)
         for level, (source, target) in enumerate(pairwise(steps), start=1):
             step = 2 ** (level - 1)
             taps = grid(self.radius, step)
             # The variance is smoothed over the nearest neighbours too, and the depth's slope is taken from them.
-            read = {name: taps | near if name == "variance" else taps for name in source.names}
+            read = {name: taps | near if name == "variance" else taps for name in target.names}
             surface = {name: taps | near if name == "depth" else taps for name in guide.names if name != "id"}
             yield Pass(
                 "atrous",
@@ -100,6 +108,7 @@ class WaveletFilter(TemporalFilter):
                 reads=(
                     access(guide, taps=surface),
                     access(source, "source", read),
+                    *(access(each, "guidance", dict.fromkeys(each.names, taps)) for each in guidance[level - 1 : level]),
                 ),
                 writes=(access(target, "target"),),
                 operations=operations.wavelet(inputs, (2 * self.radius + 1) ** 2 - 1, light),

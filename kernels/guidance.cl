@@ -1,0 +1,102 @@
+// What guides the a-trous levels: by which luminance they tell light apart, and its variance where history is short.
+//
+//   l~ = sum h w l(H) / sum h w over 3x3 taps,  w = w_z w_n
+//   G := l~ where nothing was known
+//   first = l~ + G - l(H)
+//   Var = W (V + W R),  or where W > 1/2, 1/2 of the variance of l(H) over 7x7 taps,  w = w_z w_n w_a
+//
+// in   guide;  state: H, V, W;  expected: G, R
+// out  illumination (the state): Var;  first, guidance: the luminance that a level adds to that of its own light
+// Level i compares (l(c_i) + G) / 2. In the first level l(c_i) is H itself, so that its smoothed form stands in for it.
+
+#define SHORT_HISTORY 0.5f      // of W: from fewer than two samples
+#define SHARE_OF_VARIANCE 0.5f  // of that over space: some of it is detail
+#define REACH 3                 // 7x7 taps
+#define GAUSS(d) ((d) ? 0.25f : 0.5f)
+
+typedef struct {
+    floatv weight, first[SIGNALS], second[SIGNALS];  // sums of w, w (l - l(p)), w (l - l(p))^2
+} Moments;
+
+INLINE Moments neighbourhood(const int4 size, int here, Surface surface, const floatv *centre,
+                             __global const float *guide, __global const light_t *state) {
+    Moments sum;
+    sum.weight = (floatv)(0.0f);
+    UNROLLED_FOR(s, SIGNALS) sum.first[s] = sum.second[s] = (floatv)(0.0f);
+    for (int dy = -REACH; dy <= REACH; ++dy) {
+        for (int dx = -REACH; dx <= REACH; ++dx) {
+            const int tap = here + dy * size.z + dx;
+            floatv w = weight(surface_exponent(surface, depth_scale(surface.facet, dx, dy), 0.0f, size, tap, guide));
+            w = where(w > FAINTEST, w, (floatv)(0.0f));  // even so faint, the square of light of 1e10 would show
+            sum.weight += w;
+            UNROLLED_FOR(s, SIGNALS) {
+                const floatv l = load_light(PLANE(size, state, ILLUMINATION_COLOR, s, LIGHT_LUMINANCE) + tap);
+                sum.first[s] += w * (l - centre[s]);
+                sum.second[s] += w * (l - centre[s]) * (l - centre[s]);
+            }
+        }
+    }
+    return sum;
+}
+
+KERNEL guidance(const int4 size, const float sigma_depth, const float sigma_normal, const float albedo_threshold,
+                const float depth_slope_floor, __global const float *restrict guide, __global const float *expected,
+                __global const light_t *state, __global light_t *illumination, __global float *restrict first,
+                __global float *guidance) {
+    const int x = first_column(), y = row();
+    if (x >= size.x || y >= size.y) return;
+    const int here = at(size, x, y);
+    const Surface surface =
+        surface_at(size, here, 1.0f, sigma_depth, sigma_normal, albedo_threshold, depth_slope_floor, guide);
+    __global const float *depth = SHARED_PLANE(size, guide, GUIDE_DEPTH);
+    const intv hit = load(depth + here) > 0.0f;
+
+    floatv own[SIGNALS], smooth[SIGNALS], total = (floatv)(0.0f);
+    UNROLLED_FOR(s, SIGNALS) {
+        own[s] = load_light(PLANE(size, state, ILLUMINATION_COLOR, s, LIGHT_LUMINANCE) + here);
+        smooth[s] = (floatv)(0.0f);
+    }
+#pragma unroll
+    for (int dy = -1; dy <= 1; ++dy) {
+#pragma unroll
+        for (int dx = -1; dx <= 1; ++dx) {
+            const int tap = here + dy * size.z + dx;
+            floatv normal[3];
+            load_normals(size, tap, guide, normal);
+            const floatv scale = depth_scale(surface.facet, dx, dy);
+            floatv w = GAUSS(dx) * GAUSS(dy) *
+                       weight(facet_exponent(surface.facet, scale, 0.0f, load(depth + tap), normal));
+            if (dx == 0 && dy == 0) w = (floatv)(0.25f);
+            total += w;
+            UNROLLED_FOR(s, SIGNALS) {
+                smooth[s] += w * load_light(PLANE(size, state, ILLUMINATION_COLOR, s, LIGHT_LUMINANCE) + tap);
+            }
+        }
+    }
+    const floatv share = 1.0f / total;
+    floatv variance[SIGNALS];
+    intv brief[SIGNALS], any_brief = (intv)(0);
+    UNROLLED_FOR(s, SIGNALS) {
+        smooth[s] *= share;
+        const floatv past = load(PLANE(size, expected, EXPECTED_LUMINANCE, s, 0) + here);
+        const floatv spread = load(PLANE(size, expected, EXPECTED_SPREAD, s, 0) + here);
+        const floatv guess = where(hit, where(past < 0.0f, smooth[s], past), (floatv)(0.0f));
+        store(guess, PLANE(size, guidance, GUIDANCE_LUMINANCE, s, 0) + here);
+        store(where(hit, smooth[s] + guess - own[s], (floatv)(0.0f)), PLANE(size, first, GUIDANCE_LUMINANCE, s, 0) + here);
+        const floatv count = load_light(PLANE(size, state, ILLUMINATION_INVERSE_COUNT, s, 0) + here);
+        const floatv over_time = load_variance(PLANE(size, state, ILLUMINATION_SPREAD, s, 0) + here);
+        variance[s] = count * (over_time + count * spread);
+        brief[s] = hit & (count > SHORT_HISTORY);
+        any_brief |= brief[s];
+    }
+    if (any_lane(any_brief)) {
+        const Moments sum = neighbourhood(size, here, surface, own, guide, state);
+        const floatv scale = 1.0f / max(sum.weight, (floatv)(TINY));
+        UNROLLED_FOR(s, SIGNALS) {
+            const floatv off = sum.first[s] * scale;
+            const floatv spatial = SHARE_OF_VARIANCE * max(sum.second[s] * scale - off * off, (floatv)(0.0f));
+            variance[s] = where(brief[s], spatial, variance[s]);
+        }
+    }
+    UNROLLED_FOR(s, SIGNALS) store_variance(variance[s], PLANE(size, illumination, ILLUMINATION_VARIANCE, s, 0) + here);
+}

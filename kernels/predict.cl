@@ -1,0 +1,144 @@
+// The prediction of the Kalman filter: what was known of each pixel's light, moved along motion, and what the new frame
+// differs from it by.
+//
+//   p' = p + motion;  H, V, W, S, E, G = mean over the consistent taps, as in temporal.cl
+//   D = k (c - H),  k = min(1, 8 (S^2 + l(H)) / |l(c - H)|)
+//   E := 0.4 (phi - S) + 0.6 E,  phi = sqrt(l(c))
+//
+// in   motion, guide, illumination: c; of the previous frame: guide, state, filtered light (its luminance is G)
+// out  prediction: H, V, W, S, G (W = 0 where nothing is known);
+//      innovation: depth (0 where nothing is known), D, E
+// A firefly must not move its surroundings, so D is limited. The root makes the noise of bright and of dark samples alike.
+
+#define RESIDUAL_GAIN 0.4f  // of the running residual
+#define MOST_TIMES 8.0f     // so many times what is expected is as far as a sample moves its surroundings
+
+// Of one signal, at a tap or over the taps.
+typedef struct {
+    floatv color[3], spread, count, tone, residual, luminance;
+} State;
+
+// Weighted sums over taps.
+typedef struct {
+    floatv weight;
+    State state[SIGNALS];
+} Sums;
+
+// The buffers of the previous frame.
+typedef struct {
+    __global const float *guide;
+    __global const light_t *state, *filtered;
+} Previous;
+
+INLINE Sums no_sums(void) {
+    Sums sums;
+    sums.weight = (floatv)(0.0f);
+    UNROLLED_FOR(s, SIGNALS) {
+        State *sum = &sums.state[s];
+        UNROLLED_FOR(k, 3) sum->color[k] = (floatv)(0.0f);
+        sum->spread = sum->count = sum->tone = sum->residual = sum->luminance = (floatv)(0.0f);
+    }
+    return sums;
+}
+
+INLINE void add_tap(Sums *sums, floatv w, const int4 size, Places places, Previous previous) {
+    __global const light_t *state = previous.state;
+    sums->weight += w;
+    UNROLLED_FOR(s, SIGNALS) {
+        State *sum = &sums->state[s];
+        UNROLLED_FOR(k, 3) sum->color[k] += w * fetch_light(PLANE(size, state, ILLUMINATION_COLOR, s, k), places);
+        sum->spread += w * fetch_variance(PLANE(size, state, ILLUMINATION_SPREAD, s, 0), places);
+        sum->count += w * fetch_light(PLANE(size, state, ILLUMINATION_INVERSE_COUNT, s, 0), places);
+        sum->tone += w * fetch_light(PLANE(size, state, ILLUMINATION_TONE, s, 0), places);
+        sum->residual += w * fetch_light(PLANE(size, state, ILLUMINATION_RESIDUAL, s, 0), places);
+        sum->luminance +=
+            w * fetch_light(PLANE(size, previous.filtered, ILLUMINATION_COLOR, s, LIGHT_LUMINANCE), places);
+    }
+}
+
+INLINE State select_state(intv mask, State yes, State no) {
+    UNROLLED_FOR(k, 3) yes.color[k] = where(mask, yes.color[k], no.color[k]);
+    yes.spread = where(mask, yes.spread, no.spread);
+    yes.count = where(mask, yes.count, no.count);
+    yes.tone = where(mask, yes.tone, no.tone);
+    yes.residual = where(mask, yes.residual, no.residual);
+    yes.luminance = where(mask, yes.luminance, no.luminance);
+    return yes;
+}
+
+INLINE Sums footprint(const int4 size, Expected e, Box box, float normal_threshold, Previous previous) {
+    Sums sums = no_sums();
+    for (int j = 0; j < box.rows; ++j) {
+        for (int i = 0; i < box.columns; ++i) {
+            const Places places = beside(box.corner, i + j * size.z);
+            const Seen seen = read_seen(size, places, previous.guide);
+            add_tap(&sums, footprint_weight(e, seen, box, i, j, normal_threshold), size, places, previous);
+        }
+    }
+    return sums;
+}
+
+INLINE Sums surroundings(const int4 size, Expected e, Nine nine, float normal_threshold, Previous previous) {
+    Sums sums = no_sums();
+    for (int j = 0; j < nine.box.rows; ++j) {
+        for (int i = 0; i < nine.box.columns; ++i) {
+            const Places places = beside(nine.box.corner, i + j * size.z);
+            const Seen seen = read_seen(size, places, previous.guide);
+            add_tap(&sums, nine_weight(e, seen, nine, i, j, normal_threshold), size, places, previous);
+        }
+    }
+    return sums;
+}
+
+KERNEL predict(const int4 size, const float depth_threshold, const float normal_threshold, const float albedo_threshold,
+               const int frame_number, __global const float *restrict motion, __global const float *restrict guide,
+               __global const light_t *restrict illumination, __global const float *restrict previous_guide,
+               __global const light_t *restrict previous_state, __global const light_t *restrict filtered,
+               __global float *restrict prediction, __global float *restrict innovation) {
+    const int x = first_column(), y = row();
+    if (x >= size.x || y >= size.y) return;
+    const int here = at(size, x, y);
+    const Expected e = expect(size, x, y, motion, guide, depth_threshold, albedo_threshold);
+    const floatv depth = load(SHARED_PLANE(size, guide, GUIDE_DEPTH) + here);
+    const intv hit = depth > 0.0f;
+    const Previous previous = {previous_guide, previous_state, filtered};
+
+    Sums sums = no_sums();
+    if (frame_number > 0) {  // after a cut the previous frame is of another shot
+        const Box footprints = box_of(size, x, y, e.left, e.top, hit, 2);
+        sums = footprint(size, e, footprints, normal_threshold, previous);
+        const intv lost = hit & (sums.weight <= ENOUGH);
+        if (any_lane(lost)) {  // thin geometry
+            const Nine around = nine_around(size, x, y, e, lost);
+            const Sums nine = surroundings(size, e, around, normal_threshold, previous);
+            sums.weight = where(lost, nine.weight, sums.weight);
+            UNROLLED_FOR(s, SIGNALS) sums.state[s] = select_state(lost, nine.state[s], sums.state[s]);
+        }
+    }
+
+    const intv known = hit & (sums.weight > ENOUGH);
+    const floatv share = where(known, 1.0f / max(sums.weight, (floatv)(ENOUGH)), (floatv)(0.0f));
+    store(where(known, depth, (floatv)(0.0f)), SHARED_PLANE(size, innovation, INNOVATION_DEPTH) + here);
+    UNROLLED_FOR(s, SIGNALS) {
+        const State sum = sums.state[s];
+        const floatv tone = share * sum.tone, mean = share * sum.color[LIGHT_LUMINANCE];
+        floatv off[3];
+        UNROLLED_FOR(k, 3) {
+            const floatv predicted = share * sum.color[k];
+            store(predicted, PLANE(size, prediction, PREDICTION_COLOR, s, k) + here);
+            off[k] = load_light(PLANE(size, illumination, ILLUMINATION_COLOR, s, k) + here) - predicted;
+        }
+        const floatv sample = mean + off[LIGHT_LUMINANCE];
+        const floatv most = MOST_TIMES * (tone * tone + mean);
+        const floatv limit = where(known, min(most / max(fabs(off[LIGHT_LUMINANCE]), (floatv)(TINY)), (floatv)(1.0f)),
+                                   (floatv)(0.0f));
+        UNROLLED_FOR(k, 3) store(limit * off[k], PLANE(size, innovation, INNOVATION_COLOR, s, k) + here);
+        const floatv surprise = sqrt(max(sample, (floatv)(0.0f))) - tone, before = share * sum.residual;
+        const floatv residual = where(known, before + RESIDUAL_GAIN * (surprise - before), (floatv)(0.0f));
+        store(residual, PLANE(size, innovation, INNOVATION_RESIDUAL, s, 0) + here);
+        store(share * sum.spread, PLANE(size, prediction, PREDICTION_SPREAD, s, 0) + here);
+        store(share * sum.count, PLANE(size, prediction, PREDICTION_INVERSE_COUNT, s, 0) + here);
+        store(tone, PLANE(size, prediction, PREDICTION_TONE, s, 0) + here);
+        store(share * sum.luminance, PLANE(size, prediction, PREDICTION_LUMINANCE, s, 0) + here);
+    }
+}
