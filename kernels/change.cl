@@ -16,9 +16,9 @@
 #define LEAST_SPREAD 1e-3f  // of E, relative to S: where there is no noise, a difference counts from here on
 
 // What C is for passes 2, 3 and 4, measured on white noise on a plane.
-#define CORRELATED_2 1.49f
-#define CORRELATED_3 2.54f
-#define CORRELATED_4 4.46f
+#define CORRELATED_2 1.0f
+#define CORRELATED_3 1.49f
+#define CORRELATED_4 2.54f
 
 // Of one signal.
 typedef struct {
@@ -54,50 +54,34 @@ INLINE Means divided(Means m) {
     return m;
 }
 
-// log2 of the spline (1/4, 1/2, 1/4) in both directions.
-INLINE float log2_spline(int dx, int dy) { return -2.0f - (float)(dx != 0) - (float)(dy != 0); }
+// log2 of the spline (1/2, 1, 1/2) in both directions.
+INLINE float log2_spline(int dx, int dy) { return 0.0f - (float)(dx != 0) - (float)(dy != 0); }
 
 // Where the exponential has levelled off nothing is left: even so faint, the square of light of 1e10 would show.
-INLINE floatv tap_share(Facet f, int dx, int dy, floatv z, const floatv *normal) {
-    const floatv w = weight(facet_exponent(f, depth_scale(f, dx, dy), log2_spline(dx, dy), z, normal));
+INLINE floatv tap_share(Facet f, int dx, int dy, float log2_h, floatv z, const floatv *normal) {
+    const floatv w = weight(facet_exponent(f, depth_scale(f, dx, dy), log2_h, z, normal));
     return where((z > 0.0f) & (w > FAINTEST), w, (floatv)(0.0f));
 }
 
-// Of every second pixel.
-INLINE floatv load_second(__global const float *p) {
+// Every second pixel, and those to the right of them.
+typedef struct {
+    floatv side[2];
+} Pairs;
+
+INLINE Pairs pairs_of(floatv first, floatv next) {
+    Pairs pairs;
 #if VW == 1
-    return *p;
+    pairs.side[0] = first;
+    pairs.side[1] = next;
 #else
-    const floatv first = load(p), next = load(p + VW);
-    return (floatv)(first.even, next.even);
+    pairs.side[0] = (floatv)(first.even, next.even);
+    pairs.side[1] = (floatv)(first.odd, next.odd);
 #endif
-}
-INLINE floatv load_second_normal(__global const normal_t *p) {
-#if VW == 1
-    return load_normal(p);
-#else
-    const floatv first = load_normal(p), next = load_normal(p + VW);
-    return (floatv)(first.even, next.even);
-#endif
+    return pairs;
 }
 
-INLINE void add_innovation(Means *sum, floatv w, const int4 size, int tap, __global const float *innovation,
-                           __global const float *prediction) {
-    sum->weight += w;
-    sum->share += w * w;
-    UNROLLED_FOR(s, SIGNALS) {
-        Mean *m = &sum->of[s];
-        UNROLLED_FOR(k, 3) {
-            const floatv off = load_second(PLANE(size, innovation, INNOVATION_COLOR, s, k) + tap);
-            m->color[k] += w * off;
-            if (k == LIGHT_LUMINANCE) m->square += w * off * off;
-        }
-        const floatv residual = load_second(PLANE(size, innovation, INNOVATION_RESIDUAL, s, 0) + tap);
-        const floatv least = LEAST_SPREAD * load_second(PLANE(size, prediction, PREDICTION_TONE, s, 0) + tap);
-        m->residual += w * residual;
-        m->residual_square += w * (residual * residual + least * least);
-    }
-}
+INLINE Pairs load_pairs(__global const float *p) { return pairs_of(load(p), load(p + VW)); }
+INLINE Pairs load_normal_pairs(__global const normal_t *p) { return pairs_of(load_normal(p), load_normal(p + VW)); }
 
 INLINE void store_means(Means m, const int4 size, int here, __global float *change) {
     store(m.share, SHARED_PLANE(size, change, CHANGE_SHARE) + here);
@@ -125,35 +109,56 @@ INLINE Means load_means(const int4 size, int here, __global const float *change)
 // The first pass: from all pixels to every second one, whose surface it keeps for the others.
 KERNEL innovation_mean(const int4 size, const int4 coarse_size, const float sigma_depth, const float sigma_normal,
                        const float depth_slope_floor, __global const float *restrict guide,
-                       __global const float *restrict innovation, __global const float *restrict prediction,
-                       __global float *restrict facets, __global float *restrict change) {
+                       __global const float *restrict innovation, __global float *restrict facets,
+                       __global float *restrict change) {
     const int x = first_column(), y = row();
     if (x >= coarse_size.x || y >= coarse_size.y) return;
     const int here = at(coarse_size, x, y), centre = at(size, 2 * x, 2 * y);
     __global const float *depth = SHARED_PLANE(size, guide, GUIDE_DEPTH) + centre;
-    __global const float *known = SHARED_PLANE(size, innovation, INNOVATION_DEPTH) + centre;
-    const floatv z = load_second(depth), own = load_second(known);
+    const Pairs z = load_pairs(depth), left = load_pairs(depth - 2);
+    const Pairs above = load_pairs(depth - size.z), below = load_pairs(depth + size.z);
     Gradient g;
-    g.x = slope(load_second(depth - 1), z, load_second(depth + 1));
-    g.y = slope(load_second(depth - size.z), z, load_second(depth + size.z));
+    g.x = slope(left.side[1], z.side[0], z.side[1]);
+    g.y = slope(above.side[0], z.side[0], below.side[0]);
     floatv normal[3];
-    UNROLLED_FOR(k, 3) normal[k] = load_second_normal(normal_plane(size, guide, k) + centre);
+    UNROLLED_FOR(k, 3) normal[k] = load_normal_pairs(normal_plane(size, guide, k) + centre).side[0];
+    const floatv own = load_pairs(SHARED_PLANE(size, innovation, INNOVATION_DEPTH) + centre).side[0];
 
     store(own, SHARED_PLANE(coarse_size, facets, FACETS_DEPTH) + here);
     store(g.x, PLANE(coarse_size, facets, FACETS_GRADIENT, 0, 0) + here);
     store(g.y, PLANE(coarse_size, facets, FACETS_GRADIENT, 0, 1) + here);
     UNROLLED_FOR(k, 3) store(normal[k], PLANE(coarse_size, facets, FACETS_NORMAL, 0, k) + here);
 
-    const Facet facet = facet_of(z, normal, g, 1.0f, sigma_depth, sigma_normal, depth_slope_floor);
+    const Facet facet = facet_of(z.side[0], normal, g, 1.0f, sigma_depth, sigma_normal, depth_slope_floor);
     Means sum = no_means();
-    for (int dy = -1; dy <= 1; ++dy) {
-#pragma unroll
-        for (int dx = -1; dx <= 1; ++dx) {
-            const int offset = dy * size.z + dx;
-            floatv there[3];
-            UNROLLED_FOR(k, 3) there[k] = load_second_normal(normal_plane(size, guide, k) + centre + offset);
-            const floatv w = tap_share(facet, dx, dy, load_second(known + offset), there);
-            add_innovation(&sum, where(own > 0.0f, w, (floatv)(0.0f)), size, centre + offset, innovation, prediction);
+    UNROLLED_FOR(dy, 2) {
+        const int tap = centre + dy * size.z;
+        const Pairs known = load_pairs(SHARED_PLANE(size, innovation, INNOVATION_DEPTH) + tap);
+        Pairs there[3];
+        UNROLLED_FOR(k, 3) there[k] = load_normal_pairs(normal_plane(size, guide, k) + tap);
+        floatv w[2];
+        UNROLLED_FOR(dx, 2) {
+            floatv n[3];
+            UNROLLED_FOR(k, 3) n[k] = there[k].side[dx];
+            w[dx] = where(own > 0.0f, tap_share(facet, dx, dy, 0.0f, known.side[dx], n), (floatv)(0.0f));
+            if (dx == 0 && dy == 0) w[dx] = where(own > 0.0f, (floatv)(1.0f), (floatv)(0.0f));
+            sum.weight += w[dx];
+            sum.share += w[dx] * w[dx];
+        }
+        UNROLLED_FOR(s, SIGNALS) {
+            Mean *m = &sum.of[s];
+            UNROLLED_FOR(k, 3) {
+                const Pairs off = load_pairs(PLANE(size, innovation, INNOVATION_COLOR, s, k) + tap);
+                UNROLLED_FOR(dx, 2) {
+                    m->color[k] += w[dx] * off.side[dx];
+                    if (k == LIGHT_LUMINANCE) m->square += w[dx] * off.side[dx] * off.side[dx];
+                }
+            }
+            const Pairs residual = load_pairs(PLANE(size, innovation, INNOVATION_RESIDUAL, s, 0) + tap);
+            UNROLLED_FOR(dx, 2) {
+                m->residual += w[dx] * residual.side[dx];
+                m->residual_square += w[dx] * residual.side[dx] * residual.side[dx];
+            }
         }
     }
     store_means(divided(sum), coarse_size, here, change);
@@ -181,7 +186,7 @@ INLINE Means mean_over(const int4 size, int here, int step, float sigma_depth, f
             const int tap = here + step * (dy * size.z + dx);
             floatv there[3];
             load_facet_normals(size, tap, facets, there);
-            floatv w = tap_share(facet, dx, dy, load(depth + tap), there);
+            floatv w = tap_share(facet, dx, dy, log2_spline(dx, dy), load(depth + tap), there);
             w = where(own > 0.0f, w, (floatv)(0.0f));
             sum.weight += w;
             sum.share += w * w * load(SHARED_PLANE(size, finer, CHANGE_SHARE) + tap);
@@ -215,9 +220,9 @@ typedef struct {
 } Correction;
 
 // Takes up what is left of the change at a finer scale.
-INLINE void add_change(Correction *c, Mean m, floatv share, float threshold) {
+INLINE void add_change(Correction *c, Mean m, floatv share, floatv least, float threshold) {
     const floatv off = m.residual - c->residual;
-    const floatv noise = max(m.residual_square - m.residual * m.residual, (floatv)(0.0f)) * share;
+    const floatv noise = max(m.residual_square - m.residual * m.residual, least) * share;
     const floatv significance = off * off / max(noise, (floatv)(TINY));
     const floatv b = max(1.0f - threshold * threshold / max(significance, (floatv)(TINY)), (floatv)(0.0f));
     UNROLLED_FOR(k, 3) c->color[k] += b * (m.color[k] - c->color[k]);
@@ -232,10 +237,9 @@ INLINE floatv variance_over_space(Mean m) {
 // The last pass, and the test at all scales.
 KERNEL detect(const int4 size, const int4 coarse_size, const int step, const float sigma_depth,
                   const float sigma_normal, const float depth_slope_floor, const float change_threshold,
-                  __global const float *restrict facets, __global const float *restrict change_2,
+                  __global const float *restrict prediction, __global const float *restrict facets, __global const float *restrict change_2,
                   __global const float *restrict change_3, __global float *restrict correction) {
     const int x = first_column(), y = row();
-    (void)size;
     if (x >= coarse_size.x || y >= coarse_size.y) return;
     const int here = at(coarse_size, x, y);
     const Means widest =
@@ -246,9 +250,11 @@ KERNEL detect(const int4 size, const int4 coarse_size, const int step, const flo
         Correction c;
         UNROLLED_FOR(k, 3) c.color[k] = (floatv)(0.0f);
         c.residual = c.doubt = (floatv)(0.0f);
-        add_change(&c, widest.of[s], min(CORRELATED_4 * widest.share, one), change_threshold);
-        add_change(&c, wide.of[s], min(CORRELATED_3 * wide.share, one), change_threshold);
-        add_change(&c, near.of[s], min(CORRELATED_2 * near.share, one), change_threshold);
+        const floatv tone = load_pairs(PLANE(size, prediction, PREDICTION_TONE, s, 0) + at(size, 2 * x, 2 * y)).side[0];
+        const floatv least = (LEAST_SPREAD * tone) * (LEAST_SPREAD * tone);
+        add_change(&c, widest.of[s], min(CORRELATED_4 * widest.share, one), least, change_threshold);
+        add_change(&c, wide.of[s], min(CORRELATED_3 * wide.share, one), least, change_threshold);
+        add_change(&c, near.of[s], min(CORRELATED_2 * near.share, one), least, change_threshold);
         UNROLLED_FOR(k, 3) store(c.color[k], PLANE(coarse_size, correction, CORRECTION_COLOR, s, k) + here);
         store(c.residual, PLANE(coarse_size, correction, CORRECTION_RESIDUAL, s, 0) + here);
         store(c.doubt, PLANE(coarse_size, correction, CORRECTION_DOUBT, s, 0) + here);

@@ -10,7 +10,7 @@ from svgf_cl.filters.formats import Format
 from svgf_cl.filters.operations import DISTANCE, EXP, LightOperations
 from svgf_cl.filters.pipeline import Life, Number, Pass, Pipeline, Quantity, Resource, access, user
 from svgf_cl.filters.signals import Inputs
-from svgf_cl.filters.taps import CROSS, HERE, footprint, grid
+from svgf_cl.filters.taps import CROSS, HERE, Taps, footprint, grid
 from svgf_cl.filters.wavelet import WaveletFilter
 from svgf_cl.settings import documented, number
 
@@ -63,8 +63,9 @@ class Kalman(WaveletFilter):
             writes=(access(prediction), access(innovation)),
         )
         near_guide = {name: near for name in ("depth", "normal")}
+        block = Taps(frozenset({(0, 0), (1, 0), (0, 1), (1, 1)}))
         mean = Pass("change", "innovation_mean", scalars=loose,
-            reads=(access(guide, taps=near_guide), access(innovation, taps=dict.fromkeys(innovation.names, near)), access(prediction, taps={"tone": near})),
+            reads=(access(guide, taps={"depth": block | CROSS, "normal": block}), access(innovation, taps=dict.fromkeys(innovation.names, block))),
             writes=(access(facets), access(changes[0], "change")))
         coarser = []
         for step, (finer, coarse) in enumerate(zip(changes, changes[1:]), 1):
@@ -74,7 +75,7 @@ class Kalman(WaveletFilter):
                 writes=(access(coarse, "change"),), level=step + 1))
         t = grid(1, 4)
         detect = Pass("change", "detect", scalars={"step": 4, **loose, "change_threshold": self.change_threshold},
-            reads=(access(facets, taps={"depth": t, "gradient": HERE, "normal": t}), access(changes[1]), access(changes[2], taps=dict.fromkeys(changes[2].names, t))),
+            reads=(access(prediction, taps={"tone": HERE}), access(facets, taps={"depth": t, "gradient": HERE, "normal": t}), access(changes[1]), access(changes[2], taps=dict.fromkeys(changes[2].names, t))),
             writes=(access(correction),))
         update = Pass("update", "update", scalars={**loose, "change_threshold": self.change_threshold, "alpha_color": self.alpha_color},
             reads=(access(guide, taps={"depth": CROSS, "normal": HERE}), access(self.demodulated(inputs), "illumination"), access(innovation),
