@@ -49,7 +49,7 @@ class Slot:
 
 
 def memory_slots(pipeline: Pipeline) -> list[Slot]:
-    """The memory that a pipeline needs; the first buffer of a slot has it when the frame begins, or is its only one."""
+    """The memory that a pipeline needs; the buffers of a slot have it one after another, in their order."""
     last_use = {
         each.of: number for number, entry in enumerate(pipeline.passes) for each in entry.accesses if is_own(each)
     }
@@ -63,15 +63,20 @@ def memory_slots(pipeline: Pipeline) -> list[Slot]:
         Slot([buffer], buffer.resource.planes, always if buffer.resource.tells_unknown else last_use[buffer])
         for buffer in before
     ]
+    under = {each.over: slot for each in pairs for slot in slots if slot.buffers == [Buffer(each)] and each.over}
     placed = {*lasting}
     for first, entry in enumerate(pipeline.passes):
         for each in entry.writes:
             if isinstance(each.of, Buffer) and each.of not in placed:
-                place(each.of, first, last_use[each.of], slots)
+                if slot := under.get(each.of.resource.name):  # which has no use for its memory before
+                    slot.buffers.insert(0, each.of)
+                else:
+                    place(each.of, first, last_use[each.of], slots)
                 placed.add(each.of)
-    of = {slot.buffers[0]: slot for slot in slots}
+    of = {buffer: slot for slot in slots for buffer in slot.buffers}
     for resource in pairs:  # the halves change places every frame
-        of[Buffer(resource)].planes = of[Buffer(resource, previous=True)].planes
+        halves = of[Buffer(resource)], of[Buffer(resource, previous=True)]
+        halves[0].planes = halves[1].planes = halves[0].planes.over(halves[1].planes)
     return slots
 
 

@@ -107,7 +107,7 @@ class Kalman(WaveletFilter):
             Quantity("inverse_count", 1, n, self.light_format, "inverse_count"),
             Quantity("tone", 1, n, self.light_format, "tone"),
             Quantity("residual", 1, n, self.light_format, "residual"),
-        ), Life.PAIR)
+        ), Life.PAIR, over="prediction")
 
     def prediction(self, inputs):
         n = len(inputs.signals)
