@@ -209,8 +209,7 @@ KERNEL coarser_mean(const int4 size, const int4 coarse_size, const int step, con
     (void)size;
     if (x >= coarse_size.x || y >= coarse_size.y) return;
     const int here = at(coarse_size, x, y);
-    const Means m =
-        mean_over(coarse_size, here, step, sigma_depth, sigma_normal, depth_slope_floor, facets, finer);
+    const Means m = mean_over(coarse_size, here, step, sigma_depth, sigma_normal, depth_slope_floor, facets, finer);
     store_means(m, coarse_size, here, change);
 }
 
@@ -236,15 +235,16 @@ INLINE floatv variance_over_space(Mean m) {
 
 // The last pass, and the test at all scales.
 KERNEL detect(const int4 size, const int4 coarse_size, const int step, const float sigma_depth,
-                  const float sigma_normal, const float depth_slope_floor, const float change_threshold,
-                  __global const float *restrict prediction, __global const float *restrict facets, __global const float *restrict change_2,
-                  __global const float *restrict change_3, __global float *restrict correction) {
+              const float sigma_normal, const float depth_slope_floor, const float change_threshold,
+              __global const float *restrict prediction, __global const float *restrict near,
+              __global const float *restrict facets, __global const float *restrict finer,
+              __global float *restrict correction) {
     const int x = first_column(), y = row();
     if (x >= coarse_size.x || y >= coarse_size.y) return;
     const int here = at(coarse_size, x, y);
     const Means widest =
-        mean_over(coarse_size, here, step, sigma_depth, sigma_normal, depth_slope_floor, facets, change_3);
-    const Means wide = load_means(coarse_size, here, change_3), near = load_means(coarse_size, here, change_2);
+        mean_over(coarse_size, here, step, sigma_depth, sigma_normal, depth_slope_floor, facets, finer);
+    const Means wide = load_means(coarse_size, here, finer), nearest = load_means(coarse_size, here, near);
     const floatv one = (floatv)(1.0f);
     UNROLLED_FOR(s, SIGNALS) {
         Correction c;
@@ -254,10 +254,10 @@ KERNEL detect(const int4 size, const int4 coarse_size, const int step, const flo
         const floatv least = (LEAST_SPREAD * tone) * (LEAST_SPREAD * tone);
         add_change(&c, widest.of[s], min(CORRELATED_4 * widest.share, one), least, change_threshold);
         add_change(&c, wide.of[s], min(CORRELATED_3 * wide.share, one), least, change_threshold);
-        add_change(&c, near.of[s], min(CORRELATED_2 * near.share, one), least, change_threshold);
+        add_change(&c, nearest.of[s], min(CORRELATED_2 * nearest.share, one), least, change_threshold);
         UNROLLED_FOR(k, 3) store(c.color[k], PLANE(coarse_size, correction, CORRECTION_COLOR, s, k) + here);
         store(c.residual, PLANE(coarse_size, correction, CORRECTION_RESIDUAL, s, 0) + here);
         store(c.doubt, PLANE(coarse_size, correction, CORRECTION_DOUBT, s, 0) + here);
-        store(variance_over_space(near.of[s]), PLANE(coarse_size, correction, CORRECTION_SPREAD, s, 0) + here);
+        store(variance_over_space(nearest.of[s]), PLANE(coarse_size, correction, CORRECTION_SPREAD, s, 0) + here);
     }
 }

@@ -39,8 +39,8 @@ INLINE Moments neighbourhood(const int4 size, int here, Surface surface, const f
     return sum;
 }
 
-KERNEL guidance(const int4 size, const float sigma_depth, const float sigma_normal, const float albedo_threshold,
-                const float depth_slope_floor, __global const float *restrict guide, __global const float *expected,
+KERNEL guidance(const int4 size, const float sigma_depth, const float sigma_normal, const float depth_slope_floor,
+                const float albedo_threshold, __global const float *restrict guide, __global const float *expected,
                 __global const light_t *state, __global light_t *illumination, __global float *restrict first,
                 __global float *guidance) {
     const int x = first_column(), y = row();
@@ -64,8 +64,8 @@ KERNEL guidance(const int4 size, const float sigma_depth, const float sigma_norm
             floatv normal[3];
             load_normals(size, tap, guide, normal);
             const floatv scale = depth_scale(surface.facet, dx, dy);
-            floatv w = GAUSS(dx) * GAUSS(dy) *
-                       weight(facet_exponent(surface.facet, scale, 0.0f, load(depth + tap), normal));
+            floatv w =
+                GAUSS(dx) * GAUSS(dy) * weight(facet_exponent(surface.facet, scale, 0.0f, load(depth + tap), normal));
             if (dx == 0 && dy == 0) w = (floatv)(0.25f);
             total += w;
             UNROLLED_FOR(s, SIGNALS) {
@@ -82,7 +82,8 @@ KERNEL guidance(const int4 size, const float sigma_depth, const float sigma_norm
         const floatv spread = load(PLANE(size, expected, EXPECTED_SPREAD, s, 0) + here);
         const floatv guess = where(hit, where(past < 0.0f, smooth[s], past), (floatv)(0.0f));
         store(guess, PLANE(size, guidance, GUIDANCE_LUMINANCE, s, 0) + here);
-        store(where(hit, smooth[s] + guess - own[s], (floatv)(0.0f)), PLANE(size, first, GUIDANCE_LUMINANCE, s, 0) + here);
+        store(where(hit, smooth[s] + guess - own[s], (floatv)(0.0f)),
+              PLANE(size, first, GUIDANCE_LUMINANCE, s, 0) + here);
         const floatv count = load_light(PLANE(size, state, ILLUMINATION_INVERSE_COUNT, s, 0) + here);
         const floatv over_time = load_variance(PLANE(size, state, ILLUMINATION_SPREAD, s, 0) + here);
         variance[s] = count * (over_time + count * spread);

@@ -8,7 +8,8 @@
 // in   motion, guide, illumination: c; of the previous frame: guide, state, filtered light (its luminance is G)
 // out  prediction: H, V, W, S, G (W = 0 where nothing is known);
 //      innovation: depth (0 where nothing is known), D, E
-// A firefly must not move its surroundings, so D is limited. The root makes the noise of bright and of dark samples alike.
+// A firefly must not move its surroundings, so D is limited. The root makes the noise of bright and of dark samples
+// alike.
 
 #define RESIDUAL_GAIN 0.4f  // of the running residual
 #define MOST_TIMES 8.0f     // so many times what is expected is as far as a sample moves its surroundings
@@ -34,26 +35,27 @@ INLINE Sums no_sums(void) {
     Sums sums;
     sums.weight = (floatv)(0.0f);
     UNROLLED_FOR(s, SIGNALS) {
-        State *sum = &sums.state[s];
-        UNROLLED_FOR(k, 3) sum->color[k] = (floatv)(0.0f);
-        sum->spread = sum->count = sum->tone = sum->residual = sum->luminance = (floatv)(0.0f);
+        UNROLLED_FOR(k, 3) sums.state[s].color[k] = (floatv)(0.0f);
+        sums.state[s].spread = sums.state[s].count = sums.state[s].tone = sums.state[s].residual =
+            sums.state[s].luminance = (floatv)(0.0f);
     }
     return sums;
 }
 
-INLINE void add_tap(Sums *sums, floatv w, const int4 size, Places places, Previous previous) {
+INLINE Sums with_tap(Sums sums, floatv w, const int4 size, Places places, Previous previous) {
     __global const light_t *state = previous.state;
-    sums->weight += w;
+    sums.weight += w;
     UNROLLED_FOR(s, SIGNALS) {
-        State *sum = &sums->state[s];
-        UNROLLED_FOR(k, 3) sum->color[k] += w * fetch_light(PLANE(size, state, ILLUMINATION_COLOR, s, k), places);
-        sum->spread += w * fetch_variance(PLANE(size, state, ILLUMINATION_SPREAD, s, 0), places);
-        sum->count += w * fetch_light(PLANE(size, state, ILLUMINATION_INVERSE_COUNT, s, 0), places);
-        sum->tone += w * fetch_light(PLANE(size, state, ILLUMINATION_TONE, s, 0), places);
-        sum->residual += w * fetch_light(PLANE(size, state, ILLUMINATION_RESIDUAL, s, 0), places);
-        sum->luminance +=
+        UNROLLED_FOR(k, 3)
+            sums.state[s].color[k] += w * fetch_light(PLANE(size, state, ILLUMINATION_COLOR, s, k), places);
+        sums.state[s].spread += w * fetch_variance(PLANE(size, state, ILLUMINATION_SPREAD, s, 0), places);
+        sums.state[s].count += w * fetch_light(PLANE(size, state, ILLUMINATION_INVERSE_COUNT, s, 0), places);
+        sums.state[s].tone += w * fetch_light(PLANE(size, state, ILLUMINATION_TONE, s, 0), places);
+        sums.state[s].residual += w * fetch_light(PLANE(size, state, ILLUMINATION_RESIDUAL, s, 0), places);
+        sums.state[s].luminance +=
             w * fetch_light(PLANE(size, previous.filtered, ILLUMINATION_COLOR, s, LIGHT_LUMINANCE), places);
     }
+    return sums;
 }
 
 INLINE State select_state(intv mask, State yes, State no) {
@@ -72,7 +74,7 @@ INLINE Sums footprint(const int4 size, Expected e, Box box, float normal_thresho
         for (int i = 0; i < box.columns; ++i) {
             const Places places = beside(box.corner, i + j * size.z);
             const Seen seen = read_seen(size, places, previous.guide);
-            add_tap(&sums, footprint_weight(e, seen, box, i, j, normal_threshold), size, places, previous);
+            sums = with_tap(sums, footprint_weight(e, seen, box, i, j, normal_threshold), size, places, previous);
         }
     }
     return sums;
@@ -84,7 +86,7 @@ INLINE Sums surroundings(const int4 size, Expected e, Nine nine, float normal_th
         for (int i = 0; i < nine.box.columns; ++i) {
             const Places places = beside(nine.box.corner, i + j * size.z);
             const Seen seen = read_seen(size, places, previous.guide);
-            add_tap(&sums, nine_weight(e, seen, nine, i, j, normal_threshold), size, places, previous);
+            sums = with_tap(sums, nine_weight(e, seen, nine, i, j, normal_threshold), size, places, previous);
         }
     }
     return sums;
@@ -130,8 +132,8 @@ KERNEL predict(const int4 size, const float depth_threshold, const float normal_
         }
         const floatv sample = mean + off[LIGHT_LUMINANCE];
         const floatv most = MOST_TIMES * (tone * tone + mean);
-        const floatv limit = where(known, min(most / max(fabs(off[LIGHT_LUMINANCE]), (floatv)(TINY)), (floatv)(1.0f)),
-                                   (floatv)(0.0f));
+        const floatv limit =
+            where(known, min(most / max(fabs(off[LIGHT_LUMINANCE]), (floatv)(TINY)), (floatv)(1.0f)), (floatv)(0.0f));
         UNROLLED_FOR(k, 3) store(limit * off[k], PLANE(size, innovation, INNOVATION_COLOR, s, k) + here);
         const floatv surprise = sqrt(max(sample, (floatv)(0.0f))) - tone, before = share * sum.residual;
         const floatv residual = where(known, before + RESIDUAL_GAIN * (surprise - before), (floatv)(0.0f));

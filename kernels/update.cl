@@ -11,13 +11,13 @@
 // out  state: H, V, W, S, E;  expected: G (-1 where nothing is known), R / (1 + min(W, 1))
 // W is the variance of H, in units of that of a sample: about 1 / N after N samples.
 
-#define DOUBT_OF_CHANGE 4.0f     // how much more l(A) itself is doubted than its noise says
-#define RELATIVE_DOUBT 1e-5f     // of light, however even it was
-#define MOST_DOUBT 1e3f          // of W: then the new sample is all that counts
-#define ENOUGH_AROUND 1e-3f      // sum of the weights of the pixels around
+#define DOUBT_OF_CHANGE 4.0f  // how much more l(A) itself is doubted than its noise says
+#define RELATIVE_DOUBT 1e-5f  // of light, however even it was
+#define MOST_DOUBT 1e3f       // of W: then the new sample is all that counts
+#define ENOUGH_AROUND 1e-3f   // sum of the weights of the pixels around
 #define UNKNOWN (-1.0f)
-#define DIRECT_REACH 3           // 7x7 taps
-#define LEAST_SPREAD 1e-3f       // as in change.cl
+#define DIRECT_REACH 3      // 7x7 taps
+#define LEAST_SPREAD 1e-3f  // as in change.cl
 
 // Of one signal.
 typedef struct {
@@ -147,8 +147,7 @@ INLINE Corrections direct(const int4 size, int here, Facet facet, float threshol
         c->spread = max(c->spread * scale - c->color[LIGHT_LUMINANCE] * c->color[LIGHT_LUMINANCE], (floatv)(0.0f));
         const floatv noise = max(residual_square[s] * scale - c->residual * c->residual, (floatv)(0.0f)) * share;
         const floatv significance = c->residual * c->residual / max(noise, (floatv)(TINY));
-        const floatv b =
-            max(1.0f - threshold * threshold / max(significance, (floatv)(TINY)), (floatv)(0.0f));
+        const floatv b = max(1.0f - threshold * threshold / max(significance, (floatv)(TINY)), (floatv)(0.0f));
         UNROLLED_FOR(k, 3) c->color[k] *= b;
         c->residual *= b;
         c->doubt = b * b * share;
@@ -168,8 +167,8 @@ KERNEL update(const int4 size, const int4 coarse_size, const float sigma_depth, 
               const float depth_slope_floor, const float change_threshold, const float alpha_color,
               __global const float *restrict guide, __global const light_t *restrict illumination,
               __global const float *restrict innovation, __global const float *prediction,
-              __global const float *restrict facets, __global const float *restrict correction,
-              __global light_t *state, __global float *restrict expected) {
+              __global const float *restrict facets, __global const float *restrict correction, __global light_t *state,
+              __global float *restrict expected) {
     const int x = first_column(), y = row();
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);

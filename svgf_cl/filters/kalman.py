@@ -1,55 +1,133 @@
-"""Kalman: SVGF with a Kalman gain and a test for changes of light. Equations: docs/algorithm.md."""
+"""Kalman: SVGF with a Kalman gain, and a test for changes of light. Equations: docs/algorithm.md."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
 from svgf_cl.filters import operations
-from svgf_cl.filters.formats import Format
 from svgf_cl.filters.operations import DISTANCE, EXP, LightOperations
 from svgf_cl.filters.pipeline import Life, Number, Pass, Pipeline, Quantity, Resource, access, user
 from svgf_cl.filters.signals import Inputs
-from svgf_cl.filters.taps import CROSS, HERE, Taps, footprint, grid
+from svgf_cl.filters.taps import BLOCK, CROSS, HERE, footprint, grid
 from svgf_cl.filters.wavelet import WaveletFilter
 from svgf_cl.settings import documented, number
 
-SPACING = 2  # of the pixels at which light is tested for change
-SCALES = 4
+SPACING = 2  # pixels: light is tested for change at every second one of every second row
+STEPS = (1, 2, 4)  # of these, between the taps of the passes after the first
 
 
 @documented
 @dataclass(frozen=True, kw_only=True)
 class Kalman(WaveletFilter):
-    """Parameters."""
+    """Parameters of the Kalman filter. Equations: docs/algorithm.md.
+
+    Light accumulates unfiltered, with the gain that its own uncertainty asks for. A test over neighbourhoods of growing
+    size finds where the light has changed; there the history is corrected and trusted less. The a-trous levels filter
+    what is shown, and know the variance of a mean in place of that of a sample.
+    """
 
     name: ClassVar[str] = "kalman"
 
-    alpha_color: float = number(0.05, (0.0, 1.0), unit="share of a frame", reason="x")
-    iterations: int = number(4, (1, 5), unit="levels", reason="x")
-    sigma_depth: float = number(2.0, (1e-3, 1e3), unit="slopes of the surface", reason="x")
-    sigma_normal: float = number(32.0, (8, 1024), unit="1 / (1 - cosine)", reason="x")
-    sigma_luminance: float = number(5.0, (1e-3, 1e3), unit="standard deviations", reason="x")
-    change_threshold: float = number(2.2, (0.0, 100.0), unit="standard deviations", reason="x")
-    change_sigma_depth: float = number(4.0, (1e-3, 1e3), unit="slopes of the surface", reason="x")
-    change_sigma_normal: float = number(8.0, (1, 1024), unit="1 / (1 - cosine)", reason="x")
+    alpha_color: float = number(
+        0.05,
+        (0.0, 1.0),
+        unit="share of a frame",
+        reason="Least share of the new frame in the accumulated light. 0.05, where SVGF has 0.2: a change of light is "
+        "found by a test, so the history need not be short to follow it. From 0.02 to 0.1 it hardly matters.",
+    )
+    iterations: int = number(
+        4,
+        (1, 5),
+        unit="levels",
+        reason="A-trous levels; each doubles the filter's reach. 4: what is filtered is a mean over many frames, and a "
+        "fifth level, for a tenth more time, gains nothing.",
+    )
+    sigma_depth: float = number(
+        2.0,
+        (1e-3, 1e3),
+        unit="slopes of the surface",
+        reason="Tolerated depth difference in units of the surface's own slope. 2: curved surfaces keep their "
+        "neighbours; within a factor of two it hardly matters.",
+    )
+    sigma_normal: float = number(
+        32.0,
+        (8, 1024),
+        unit="1 / (1 - cosine)",
+        reason="How sharply normals are told apart: the weight falls to 1/e at a cosine of 1 - 1/sigma_normal. 32, 14 "
+        "degrees: the light is told apart so well that a bumpy surface need not be taken for many.",
+    )
+    sigma_luminance: float = number(
+        4.0,
+        (1e-3, 1e3),
+        unit="standard deviations",
+        reason="Tolerated luminance difference, in units of the estimated noise of the mean. 4: less leaves noise, "
+        "more blurs shadows; from 3 to 5 the picture is within 0.2 dB.",
+    )
+    change_threshold: float = number(
+        2.5,
+        (0.0, 1e3),
+        unit="standard deviations",
+        reason="How far the new frame must lie off the history to count as a change of light. Less follows moving "
+        "shadows sooner, more is steadier where nothing changes. 1000 turns the test off.",
+    )
+    change_sigma_depth: float = number(
+        4.0,
+        (1e-3, 1e3),
+        unit="slopes of the surface",
+        reason="As sigma_depth, for the test. 4: a change of light does not stop where a surface bends, and a test "
+        "over more pixels finds smaller changes.",
+    )
+    change_sigma_normal: float = number(
+        8.0,
+        (1, 1024),
+        unit="1 / (1 - cosine)",
+        reason="As sigma_normal, for the test. 8, 29 degrees, for the same reason.",
+    )
+
+    @property
+    def change_scalars(self) -> dict[str, Number]:
+        """What tells surfaces apart in the test, as kernels take it."""
+        return {
+            "sigma_depth": self.change_sigma_depth,
+            "sigma_normal": self.change_sigma_normal,
+            "depth_slope_floor": self.depth_slope_floor,
+        }
 
     def pipeline(self, inputs: Inputs) -> Pipeline:
-        state = self.state(inputs)
-        prediction, innovation = self.prediction(inputs), self.innovation(inputs)
-        facets = Resource("facets", "facets", (Quantity("depth"), Quantity("gradient", 2), Quantity("normal", 3)), spacing=SPACING)
-        changes = [self.change(inputs, scale) for scale in range(1, SCALES)]
-        correction = self.correction(inputs)
-        first, guidance = (self.guidance(inputs, *names) for names in (("first_guidance",), ("guidance", "expected")))
-        n = len(inputs.signals)
-        expected = Resource("expected", "expected", (Quantity("luminance", 1, n, stage="expected"), Quantity("spread", 1, n, stage="spread_over_space")))
-        levels = [self.illumination(inputs, f"level_{level}", Life.HISTORY if level == self.iterations else Life.SCRATCH) for level in range(1, self.iterations + 1)]
-        guide = self.guide(inputs)
+        """The passes of a frame: predict, test, update, then the levels, of which the next frame sees the luminance."""
+        names = [f"level_{level}" for level in range(1, self.iterations + 1)]
+        levels = [self.filtered(inputs, name, is_last=name == names[-1]) for name in names]
+        passes = (
+            self.demodulate_pass(inputs),
+            self.predict_pass(inputs, levels[-1]),
+            *self.test_passes(inputs),
+            self.update_pass(inputs),
+            self.guidance_pass(inputs),
+            *self.levels(
+                inputs,
+                [self.state(inputs), *levels],
+                {"sigma_luminance": self.sigma_luminance},
+                LightOperations(
+                    weight=2 + DISTANCE + 1 + EXP[self.precision],  # (l + G) / 2; w_l; w
+                    sums=2 * 3 + 1 + 2 + 1,  # w c; w^2 Var; w
+                    once=operations.SMOOTH_VARIANCE + 2 + 1 + 3 + 2,  # scale of w_l; the quotients
+                ),
+                [self.guidance(inputs, "guidance_1"), *[self.guidance(inputs, "guidance")] * (self.iterations - 1)],
+            ),
+            *self.last_passes(inputs, levels[-1]),
+        )
+        return Pipeline(passes, inputs.defines | self.macros | {"GUIDED_BY_VARIANCE": 1, "GUIDED_BY_PAST": 1})
+
+    def predict_pass(self, inputs: Inputs, filtered: Resource) -> Pass:
+        """What was known of each pixel's light, moved along motion, and how the new frame differs from it."""
+        guide, state = self.guide(inputs), self.state(inputs)
         taps = footprint(2)
-        near = grid(1)
-        loose: dict[str, Number] = {"sigma_depth": self.change_sigma_depth, "sigma_normal": self.change_sigma_normal, "depth_slope_floor": self.depth_slope_floor}
-        predict = Pass(
-            "predict", "predict",
+        kept = [name for name in state.names if name != "variance"]
+        return Pass(
+            "predict",
+            "predict",
             scalars={name: getattr(self, name) for name in ("depth_threshold", "normal_threshold", "albedo_threshold")},
             per_frame=("frame_number",),
             reads=(
@@ -57,75 +135,167 @@ class Kalman(WaveletFilter):
                 access(guide, taps=dict.fromkeys(guide.names, HERE) | {"depth": CROSS}),
                 access(self.demodulated(inputs), "illumination"),
                 access(guide, taps=dict.fromkeys(guide.names, taps), previous=True),
-                access(state, taps=dict.fromkeys([n for n in state.names if n != "variance"], taps), previous=True),
-                access(levels[-1], "filtered", {"color": taps}),
+                access(state, taps=dict.fromkeys(kept, taps), previous=True),
+                access(filtered, "filtered", {"color": taps}),
             ),
-            writes=(access(prediction), access(innovation)),
+            writes=(access(self.prediction(inputs)), access(self.innovation(inputs))),
+            operations=operations.predict(inputs),
         )
-        near_guide = {name: near for name in ("depth", "normal")}
-        block = Taps(frozenset({(0, 0), (1, 0), (0, 1), (1, 1)}))
-        mean = Pass("change", "innovation_mean", scalars=loose,
-            reads=(access(guide, taps={"depth": block | CROSS, "normal": block}), access(innovation, taps=dict.fromkeys(innovation.names, block))),
-            writes=(access(facets), access(changes[0], "change")))
-        coarser = []
-        for step, (finer, coarse) in enumerate(zip(changes, changes[1:]), 1):
-            t = grid(1, step)
-            coarser.append(Pass("change", "coarser_mean", scalars={"step": step, **loose},
-                reads=(access(facets, taps={"depth": t, "gradient": HERE, "normal": t}), access(finer, "finer", dict.fromkeys(finer.names, t))),
-                writes=(access(coarse, "change"),), level=step + 1))
-        t = grid(1, 4)
-        detect = Pass("change", "detect", scalars={"step": 4, **loose, "change_threshold": self.change_threshold},
-            reads=(access(prediction, taps={"tone": HERE}), access(facets, taps={"depth": t, "gradient": HERE, "normal": t}), access(changes[1]), access(changes[2], taps=dict.fromkeys(changes[2].names, t))),
-            writes=(access(correction),))
-        update = Pass("update", "update", scalars={**loose, "change_threshold": self.change_threshold, "alpha_color": self.alpha_color},
-            reads=(access(guide, taps={"depth": CROSS, "normal": HERE}), access(self.demodulated(inputs), "illumination"), access(innovation),
-                access(prediction), access(facets, taps={"depth": HERE, "normal": HERE}), access(correction)),
-            writes=(access(state, taps=dict.fromkeys([n for n in state.names if n != "variance"], HERE)), access(expected)))
-        guide_pass = Pass("guidance", "guidance", scalars={**loose, "albedo_threshold": self.albedo_threshold} if False else {"sigma_depth": self.change_sigma_depth, "sigma_normal": self.change_sigma_normal, "albedo_threshold": self.albedo_threshold, "depth_slope_floor": self.depth_slope_floor},
-            reads=(access(guide, taps=near_guide), access(expected), access(state, taps={"color": near, "spread": HERE, "inverse_count": HERE})),
-            writes=(access(state, "illumination", {"variance": HERE}), access(first, "first"), access(guidance)))
-        smooth = 9 * (2 + 1 + 1) + 1 + 1 + 4 + 1
-        passes = (
-            self.demodulate_pass(inputs), predict, mean, *coarser, detect, update, guide_pass,
-            *self.levels(inputs, [state, *levels], {"sigma_luminance": self.sigma_luminance},
-                LightOperations(weight=DISTANCE + 3 + EXP[self.precision], sums=2 * 3 + 1 + 2 + 1, once=smooth + 2 + 1 + 3 + 2),
-                [first] + [guidance] * (self.iterations - 1)),
-            *self.last_passes(inputs, levels[-1]),
+
+    def test_passes(self, inputs: Inputs) -> Iterator[Pass]:
+        """Means of the innovation over neighbourhoods of growing size, and what of it is a change of light."""
+        signals = len(inputs.signals)
+        guide, facets, innovation = self.guide(inputs), self.facets(), self.innovation(inputs)
+        changes = [self.change(inputs, scale) for scale in range(1, len(STEPS) + 1)]
+        yield Pass(
+            "change",
+            "innovation_mean",
+            scalars=self.change_scalars,
+            reads=(
+                access(guide, taps={"depth": BLOCK | CROSS, "normal": BLOCK}),
+                access(innovation, taps=dict.fromkeys(innovation.names, BLOCK)),
+            ),
+            writes=(access(facets), access(changes[0], "change")),
+            operations=operations.mean_of_change(taps=3, signals=signals) + operations.GRADIENT,
         )
-        return Pipeline(passes, inputs.defines | self.macros | {"GUIDED_BY_VARIANCE": 1, "GUIDED_BY_PAST": 1})
+        for step, finer, coarser in zip(STEPS, changes, [*changes[1:], None], strict=True):
+            taps = grid(1, step)
+            means = (
+                access(facets, taps={"depth": taps, "gradient": HERE, "normal": taps}),
+                access(finer, "finer", dict.fromkeys(finer.names, taps)),
+            )
+            common = {"step": step, **self.change_scalars}
+            cost = operations.mean_of_change(taps=8, signals=signals)
+            if coarser:
+                yield Pass(
+                    "change",
+                    "coarser_mean",
+                    common,
+                    reads=means,
+                    writes=(access(coarser, "change"),),
+                    operations=cost,
+                    level=step,
+                )
+            else:
+                yield Pass(
+                    "change",
+                    "detect",
+                    scalars={**common, "change_threshold": self.change_threshold},
+                    reads=(
+                        access(self.prediction(inputs), taps={"tone": HERE}),
+                        access(changes[1], "near"),
+                        *means,
+                    ),
+                    writes=(access(self.correction(inputs)),),
+                    operations=cost + operations.detect(signals),
+                )
 
-    def illumination(self, inputs, name, life=Life.SCRATCH):
-        spread = Quantity("variance", 1, len(inputs.signals), self.variance_format, f"{name}_variance")
-        return Resource(name, "illumination", (self.color(inputs, name), spread), life)
+    def update_pass(self, inputs: Inputs) -> Pass:
+        """The prediction, corrected by what has changed, blended with the new light by the Kalman gain."""
+        state = self.state(inputs)
+        made = [name for name in state.names if name != "variance"]
+        return Pass(
+            "update",
+            "update",
+            scalars={
+                **self.change_scalars,
+                "change_threshold": self.change_threshold,
+                "alpha_color": self.alpha_color,
+            },
+            reads=(
+                access(self.guide(inputs), taps={"depth": CROSS, "normal": HERE}),
+                access(self.demodulated(inputs), "illumination"),
+                access(self.innovation(inputs)),
+                access(self.prediction(inputs)),
+                access(self.facets(), taps={"depth": BLOCK, "normal": BLOCK}),
+                access(self.correction(inputs), taps=dict.fromkeys(self.correction(inputs).names, BLOCK)),
+            ),
+            writes=(access(state, taps=dict.fromkeys(made, HERE)), access(self.expected(inputs))),
+            operations=operations.update(inputs),
+        )
 
-    def state(self, inputs):
-        n = len(inputs.signals)
-        return Resource("state", "illumination", (
+    def guidance_pass(self, inputs: Inputs) -> Pass:
+        """The variance of the mean, and the luminance by which the levels tell light apart."""
+        guide, state = self.guide(inputs), self.state(inputs)
+        near = grid(1)
+        return Pass(
+            "guidance",
+            "guidance",
+            scalars={**self.change_scalars, "albedo_threshold": self.albedo_threshold},
+            reads=(
+                access(guide, taps={"depth": near, "normal": near}),
+                access(self.expected(inputs)),
+                access(state, taps={"color": near, "spread": HERE, "inverse_count": HERE}),
+            ),
+            writes=(
+                access(state, "illumination", {"variance": HERE}),
+                access(self.guidance(inputs, "guidance_1"), "first"),
+                access(self.guidance(inputs, "guidance")),
+            ),
+            operations=operations.guidance(inputs),
+        )
+
+    def state(self, inputs: Inputs) -> Resource:
+        """What is known of the light: its mean, the mean's variance, and what the next frame needs to go on."""
+        signals, light, variance = len(inputs.signals), self.light_format, self.variance_format
+        quantities = (
             self.color(inputs, "accumulated"),
-            Quantity("variance", 1, n, self.variance_format, "variance"),
-            Quantity("spread", 1, n, self.variance_format, "moment_variance"),
-            Quantity("inverse_count", 1, n, self.light_format, "inverse_count"),
-            Quantity("tone", 1, n, self.light_format, "tone"),
-            Quantity("residual", 1, n, self.light_format, "residual"),
-        ), Life.PAIR, over="prediction")
+            Quantity("variance", 1, signals, variance, "variance"),
+            Quantity("spread", 1, signals, variance, "sample_variance"),
+            Quantity("inverse_count", 1, signals, light, "inverse_count"),
+            Quantity("tone", 1, signals, light, "tone"),
+            Quantity("residual", 1, signals, light, "residual"),
+        )
+        return Resource("state", "illumination", quantities, Life.PAIR, over="prediction")
 
-    def prediction(self, inputs):
-        n = len(inputs.signals)
-        return Resource("prediction", "prediction", (
-            Quantity("color", 3, n, stage="predicted", is_light=True),
-            Quantity("spread", 1, n), Quantity("inverse_count", 1, n), Quantity("tone", 1, n), Quantity("luminance", 1, n)))
+    def prediction(self, inputs: Inputs) -> Resource:
+        """The state of the previous frame, where the pixel was then, and the luminance that was shown there."""
+        names = ("spread", "inverse_count", "tone", "luminance")
+        signals = len(inputs.signals)
+        color = Quantity("color", 3, signals, stage="predicted", is_light=True)
+        others = (Quantity(name, 1, signals, stage=f"predicted_{name}") for name in names)
+        return Resource("prediction", "prediction", (color, *others))
 
-    def innovation(self, inputs):
-        n = len(inputs.signals)
-        return Resource("innovation", "innovation", (Quantity("depth", stage="known_depth"), Quantity("color", 3, n, stage="innovation", is_light=True), Quantity("residual", 1, n, stage="innovation_residual")))
+    def innovation(self, inputs: Inputs) -> Resource:
+        """How the new frame differs from the prediction; its depth is 0 where there is none."""
+        signals = len(inputs.signals)
+        color = Quantity("color", 3, signals, stage="innovation", is_light=True)
+        residual = Quantity("residual", 1, signals, stage="innovation_residual")
+        return Resource("innovation", "innovation", (Quantity("depth", stage="known_depth"), color, residual))
 
-    def change(self, inputs, scale):
-        n = len(inputs.signals)
-        return Resource(f"change_{scale}", "change", (Quantity("share"), Quantity("color", 3, n, stage=f"change_{scale}", is_light=True), Quantity("square", 1, n), Quantity("residual", 1, n), Quantity("residual_square", 1, n)), spacing=SPACING)
+    def facets(self) -> Resource:
+        """The surface at every second pixel; depth is 0 where there is no prediction."""
+        gradient, normal = Quantity("gradient", 2, stage="facet_gradient"), Quantity("normal", 3, stage="facet_normal")
+        return Resource("facets", "facets", (Quantity("depth", stage="facet_depth"), gradient, normal), spacing=SPACING)
 
-    def correction(self, inputs):
-        n = len(inputs.signals)
-        return Resource("correction", "correction", (Quantity("color", 3, n, stage="correction", is_light=True), Quantity("residual", 1, n), Quantity("doubt", 1, n, stage="doubt"), Quantity("spread", 1, n)), spacing=SPACING)
+    def change(self, inputs: Inputs, scale: int) -> Resource:
+        """Means of the innovation over a neighbourhood, and the share of a sample's variance that they have."""
+        signals, stage = len(inputs.signals), f"change_{scale}"
+        color = Quantity("color", 3, signals, stage=stage, is_light=True)
+        names = ("square", "residual", "residual_square")
+        others = (Quantity(name, 1, signals, stage=f"{stage}_{name}") for name in names)
+        return Resource(stage, "change", (Quantity("share", stage=f"{stage}_share"), color, *others), spacing=SPACING)
 
-    def guidance(self, inputs, name, over=""):
-        return Resource(name, "guidance", (Quantity("luminance", 1, len(inputs.signals), stage=name),), over=over)
+    def correction(self, inputs: Inputs) -> Resource:
+        """What has changed of the light, how uncertain that is, and the innovation's variance over space."""
+        signals = len(inputs.signals)
+        color = Quantity("color", 3, signals, stage="correction", is_light=True)
+        names = ("residual", "doubt", "spread")
+        others = (Quantity(name, 1, signals, stage=f"correction_{name}") for name in names)
+        return Resource("correction", "correction", (color, *others), spacing=SPACING)
+
+    def expected(self, inputs: Inputs) -> Resource:
+        """The luminance that will be shown, as far as the past tells, and the variance of a sample over space."""
+        names = ("luminance", "spread")
+        quantities = tuple(Quantity(name, 1, len(inputs.signals), stage=f"expected_{name}") for name in names)
+        return Resource("expected", "expected", quantities)
+
+    def guidance(self, inputs: Inputs, name: str) -> Resource:
+        """The luminance that a level adds to that of its own light when it tells light apart."""
+        return Resource(name, "guidance", (Quantity("luminance", 1, len(inputs.signals), stage=name),))
+
+    def filtered(self, inputs: Inputs, name: str, *, is_last: bool) -> Resource:
+        """What a level makes; of the last the next frame reads the luminance."""
+        spread = Quantity("variance", 1, len(inputs.signals), self.variance_format, f"{name}_variance")
+        life = Life.HISTORY if is_last else Life.SCRATCH
+        return Resource(name, "illumination", (self.color(inputs, name), spread), life)

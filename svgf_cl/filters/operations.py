@@ -18,6 +18,11 @@ DISTANCE = 3  # |a - b| scale
 ALBEDO = 5 + 2  # all channels of a code between two others; a choice
 GRADIENT = 10  # per axis two differences, two magnitudes, a choice
 SAFE = 2  # finite? else another value
+SMOOTH_VARIANCE = 9 * (2 + 1 + 1) + 1 + 1 + 4 + 1  # 3x3 Gaussian over hits; root; the scale of w_l
+WEIGHT = DISTANCE + 1 + 2 * 3 + EXP["precise"]  # of a tap by depth and normal
+TOLERANCE = 4 + 2 + 1  # of depth, at a tap: |g . d|; plus the floor; reciprocal
+FOOTPRINT = 2 * (1 + 2 + 2) + GRADIENT + 4  # clamp, floor and fraction per axis; tolerance of depth
+FACET = 3 + 2 + 1  # normal, slope and floor times their sigmas
 
 
 def demodulate(inputs: Inputs) -> float:
@@ -32,12 +37,50 @@ def demodulate(inputs: Inputs) -> float:
 def temporal(inputs: Inputs) -> float:
     """Section 2: four taps of the footprint, each held against the surface, then the blend of colour and moments."""
     signals = len(inputs.signals)
-    footprint = 2 * (1 + 2 + 2) + GRADIENT + 4  # clamp, floor and fraction per axis; tolerance of depth
-    consistent = DOT + 1 + (4 + 2 + 1) + 1 + (1 if inputs.id else 0)  # normal; depth along the surface; hit; id
-    weight = 3 + 1 + (ALBEDO + 1 if inputs.divides_by_albedo else 0)
-    tap = consistent + weight + 2 * (1 + 3 * signals) + signals * (2 + 3 + 2)  # N, c; M; V + (M - M_h)^2
+    tap = tap_of_the_past(inputs) + 2 * (1 + 3 * signals) + signals * (2 + 3 + 2)  # N, c; M; V + (M - M_h)^2
     blend = signals * (3 * BLEND + BLEND + 1 + 4)  # c; M; 1 - a; V
-    return footprint + 4 * tap + 4 + blend  # N, 1 / N, the two shares
+    return FOOTPRINT + 4 * tap + 4 + blend  # N, 1 / N, the two shares
+
+
+def tap_of_the_past(inputs: Inputs) -> float:
+    """Section 2: whether a tap shows the surface, and its weight."""
+    consistent = DOT + 1 + (4 + 2 + 1) + 1 + (1 if inputs.id else 0)  # normal; depth along the surface; hit; id
+    return consistent + 3 + 1 + (ALBEDO + 1 if inputs.divides_by_albedo else 0)
+
+
+def predict(inputs: Inputs) -> float:
+    """Section 7: four taps of the footprint, and the innovation."""
+    planes = 3 + 5  # H; V, W, S, E, G
+    tap = tap_of_the_past(inputs) + 1 + 2 * planes * len(inputs.signals)
+    innovation = 3 + 4 + 3 + 1 + 3 + 1 + BLEND  # c - H; its limit; D; phi; E
+    return FOOTPRINT + 4 * tap + 1 + len(inputs.signals) * (planes + innovation)
+
+
+def mean_of_change(taps: int, signals: int) -> float:
+    """Section 7: one pass of the test, of so many taps beside the middle one."""
+    sums = 2 * 3 + 2 + 2 + 2  # d, r, e, f
+    return FACET + taps * (TOLERANCE + WEIGHT + 4) + (taps + 1) * signals * sums + 1 + signals * 6
+
+
+def detect(signals: int) -> float:
+    """Section 7: three scales of the test; R."""
+    scale = 1 + 3 + 3 + 3 + 3 * BLEND + 2 + 6  # e - B; its noise; t^2; b; A; B; q
+    return signals * (3 * scale + 2 + 2)
+
+
+def update(inputs: Inputs) -> float:
+    """Section 7: the corrections of the surroundings, the gain, the blend; on average 9/4 taps are read."""
+    signals = len(inputs.signals)
+    tap = TOLERANCE + WEIGHT + 2 + 2 * 6 * signals
+    gain = 2 + 7 + 3 + 3  # R; q; W; a
+    blend = 3 * (2 + BLEND) + 2 + BLEND + 2 + 4 + 3 + 2  # H; S; E; V; W; G
+    return GRADIENT + FACET + 9 / 4 * tap + 1 + signals * (6 + gain + blend)
+
+
+def guidance(inputs: Inputs) -> float:
+    """Section 7: nine taps of luminance; the variance of the mean."""
+    signals = len(inputs.signals)
+    return GRADIENT + FACET + 8 * (TOLERANCE + WEIGHT + 1) + 9 * (1 + 2 * signals) + signals * (1 + 3 + 3)
 
 
 @dataclass(frozen=True)
@@ -64,12 +107,10 @@ def wavelet(inputs: Inputs, taps: int, light: LightOperations) -> float:
 
     The terms and the spline add up to one exponent; its factors are those of the pixel, not of the tap.
     """
-    surface = GRADIENT + 3 + 2 + 1  # normal, slope and floor times their sigmas
-    tolerance = 4 + 2 + 1  # |g . d|; plus the floor; reciprocal
     exponent = DISTANCE + 1 + 2 * 3  # of w_z and h; of w_n
     exponent += ALBEDO if inputs.divides_by_albedo else 0  # of w_a
     per_signal = taps * (light.weight + light.sums) + light.once
-    return surface + taps // 2 * tolerance + taps * exponent + len(inputs.signals) * per_signal
+    return GRADIENT + FACET + taps // 2 * TOLERANCE + taps * exponent + len(inputs.signals) * per_signal
 
 
 def modulate(inputs: Inputs) -> float:

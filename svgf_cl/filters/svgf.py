@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from svgf_cl.filters.operations import DISTANCE, EXP, LightOperations
+from svgf_cl.filters.operations import DISTANCE, EXP, SMOOTH_VARIANCE, LightOperations
 from svgf_cl.filters.pipeline import Life, Pass, Pipeline, Quantity, Resource, access
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.filters.taps import HERE
@@ -39,7 +39,6 @@ class Settings(WaveletFilter):
         history = self.illumination(inputs, "level_1", Life.HISTORY)
         others = [self.illumination(inputs, f"level_{level}") for level in range(2, self.iterations + 1)]
         steps = [accumulated, history, *others]
-        smooth = 9 * (2 + 1 + 1) + 1 + 1 + 4 + 1  # 3x3 Gaussian over hits; root; the scale of w_l
         passes = (
             self.demodulate_pass(inputs),
             self.temporal_pass(inputs, history, accumulated, alpha_moments=self.alpha_moments),
@@ -51,7 +50,7 @@ class Settings(WaveletFilter):
                 LightOperations(
                     weight=DISTANCE + 1 + EXP[self.precision],  # w_l; w
                     sums=2 * 3 + 1 + 2 + 1,  # w c; w^2 Var; w
-                    once=smooth + 1 + 3 + 2,  # and the quotients
+                    once=SMOOTH_VARIANCE + 1 + 3 + 2,  # and the quotients
                 ),
             ),
             *self.last_passes(inputs, steps[-1]),

@@ -49,4 +49,5 @@ def footprint(width: int) -> Taps:
 
 
 HERE = grid(0)
+BLOCK = Taps(square(range(2)))
 CROSS = Taps(frozenset({(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)}))

@@ -108,7 +108,10 @@ class WaveletFilter(TemporalFilter):
                 reads=(
                     access(guide, taps=surface),
                     access(source, "source", read),
-                    *(access(each, "guidance", dict.fromkeys(each.names, taps)) for each in guidance[level - 1 : level]),
+                    *(
+                        access(each, "guidance", dict.fromkeys(each.names, taps))
+                        for each in guidance[level - 1 : level]
+                    ),
                 ),
                 writes=(access(target, "target"),),
                 operations=operations.wavelet(inputs, (2 * self.radius + 1) ** 2 - 1, light),
