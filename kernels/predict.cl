@@ -2,8 +2,8 @@
 // differs from it by.
 //
 //   p' = p + motion;  H, V, W, S, E, G = mean over the consistent taps, as in temporal.cl
-//   D = k (c - H),  k = min(1, 8 (S^2 + l(H)) / |l(c - H)|)
-//   E := 0.4 (phi - S) + 0.6 E,  phi = sqrt(l(c))
+//   D = c - H
+//   E := 0.3 (phi - S) + 0.7 E,  phi = sqrt(l(c))
 //
 // in   motion, guide, illumination: c; of the previous frame: guide, state, filtered light (its luminance is G)
 // out  prediction: H, V, W, S, G (W = 0 where nothing is known);
@@ -11,8 +11,7 @@
 // A firefly must not move its surroundings, so D is limited. The root makes the noise of bright and of dark samples
 // alike.
 
-#define RESIDUAL_GAIN 0.4f  // of the running residual
-#define MOST_TIMES 8.0f     // so many times what is expected is as far as a sample moves its surroundings
+#define RESIDUAL_GAIN 0.3f  // of the running residual
 
 // Of one signal, at a tap or over the taps.
 typedef struct {
@@ -123,19 +122,15 @@ KERNEL predict(const int4 size, const float depth_threshold, const float normal_
     store(where(known, depth, (floatv)(0.0f)), SHARED_PLANE(size, innovation, INNOVATION_DEPTH) + here);
     UNROLLED_FOR(s, SIGNALS) {
         const State sum = sums.state[s];
-        const floatv tone = share * sum.tone, mean = share * sum.color[LIGHT_LUMINANCE];
-        floatv off[3];
+        const floatv tone = share * sum.tone;
+        floatv sample[3];
         UNROLLED_FOR(k, 3) {
             const floatv predicted = share * sum.color[k];
             store(predicted, PLANE(size, prediction, PREDICTION_COLOR, s, k) + here);
-            off[k] = load_light(PLANE(size, illumination, ILLUMINATION_COLOR, s, k) + here) - predicted;
+            sample[k] = load_light(PLANE(size, illumination, ILLUMINATION_COLOR, s, k) + here);
+            store(sample[k] - predicted, PLANE(size, innovation, INNOVATION_COLOR, s, k) + here);
         }
-        const floatv sample = mean + off[LIGHT_LUMINANCE];
-        const floatv most = MOST_TIMES * (tone * tone + mean);
-        const floatv limit =
-            where(known, min(most / max(fabs(off[LIGHT_LUMINANCE]), (floatv)(TINY)), (floatv)(1.0f)), (floatv)(0.0f));
-        UNROLLED_FOR(k, 3) store(limit * off[k], PLANE(size, innovation, INNOVATION_COLOR, s, k) + here);
-        const floatv surprise = sqrt(max(sample, (floatv)(0.0f))) - tone, before = share * sum.residual;
+        const floatv surprise = sqrt(sample[LIGHT_LUMINANCE]) - tone, before = share * sum.residual;
         const floatv residual = where(known, before + RESIDUAL_GAIN * (surprise - before), (floatv)(0.0f));
         store(residual, PLANE(size, innovation, INNOVATION_RESIDUAL, s, 0) + here);
         store(share * sum.spread, PLANE(size, prediction, PREDICTION_SPREAD, s, 0) + here);

@@ -7,11 +7,11 @@
 //   a = max(alpha, W / (1 + W)),  d = l(c) - l(H)
 //   H += a (c - H),  S += a (phi - S),  E *= 1 - a,  V = (1 - a) (V + a d^2),  W = a^2 + (1 - a)^2 W
 //
-// in   guide, illumination: c;  prediction, innovation;  correction
+// in   guide;  prediction, innovation;  facets, correction
 // out  state: H, V, W, S, E;  expected: G (-1 where nothing is known), R / (1 + min(W, 1))
 // W is the variance of H, in units of that of a sample: about 1 / N after N samples.
 
-#define DOUBT_OF_CHANGE 4.0f  // how much more l(A) itself is doubted than its noise says
+#define DOUBT_OF_CHANGE 4.0f
 #define RELATIVE_DOUBT 1e-5f  // of light, however even it was
 #define MOST_DOUBT 1e3f       // of W: then the new sample is all that counts
 #define ENOUGH_AROUND 1e-3f   // sum of the weights of the pixels around
@@ -165,10 +165,9 @@ INLINE Correction select_correction(intv mask, Correction yes, Correction no) {
 
 KERNEL update(const int4 size, const int4 coarse_size, const float sigma_depth, const float sigma_normal,
               const float depth_slope_floor, const float change_threshold, const float alpha_color,
-              __global const float *restrict guide, __global const light_t *restrict illumination,
-              __global const float *restrict innovation, __global const float *prediction,
-              __global const float *restrict facets, __global const float *restrict correction, __global light_t *state,
-              __global float *restrict expected) {
+              __global const float *restrict guide, __global const float *restrict innovation,
+              __global const float *prediction, __global const float *restrict facets,
+              __global const float *restrict correction, __global light_t *state, __global float *restrict expected) {
     const int x = first_column(), y = row();
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
@@ -204,7 +203,8 @@ KERNEL update(const int4 size, const int4 coarse_size, const float sigma_depth, 
         floatv sample[3], corrected[3];
         UNROLLED_FOR(k, 3) {
             const floatv predicted = load(PLANE(size, prediction, PREDICTION_COLOR, s, k) + here);
-            sample[k] = load_light(PLANE(size, illumination, ILLUMINATION_COLOR, s, k) + here);
+            const floatv innovated = predicted + load(PLANE(size, innovation, INNOVATION_COLOR, s, k) + here);
+            sample[k] = max(innovated, (floatv)(0.0f));  // c, but for the rounding of c - H
             corrected[k] = max(predicted + c.color[k], (floatv)(0.0f));
             const floatv blended = corrected[k] + a * (sample[k] - corrected[k]);
             store_light(where(known, blended, sample[k]), PLANE(size, state, ILLUMINATION_COLOR, s, k) + here);
