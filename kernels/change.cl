@@ -3,17 +3,15 @@
 //
 //   pass i = 1, 2, 3, 4 has 3x3 taps 2^(i-1) pixels apart, with weights w = h w_z w_n of geometry alone
 //     d, r, e, f := mean of d, r, e, f,   u := sum w^2 u / (sum w)^2
-//     from d = D, r = l(D)^2, e = E, f = E^2 + (1e-3 S)^2, u = 1 at all pixels
+//     from d = D, r = l(D)^2, e = E, f = E^2, u = 1 at all pixels
 //   from the widest pass down to i = 2, beginning with A = B = q = 0:
-//     t^2 = (e - B)^2 / ((f - e^2) min(1, C u)),   b = max(0, 1 - threshold^2 / t^2)
-//     A += b (d - A),   B += b (e - B),   q = max(q (1 - b)^2, b^2 min(1, C u))
+//     v = min(1, C u),   t^2 = (1 - v)^2 (e - B)^2 / (max(f - e^2, (1e-3 S)^2) v),   b = max(0, 1 - threshold^2 / t^2)
+//     A += b (d - A),   B += b (e - B),   q = max(q (1 - b)^2, b^2 v)
 //
 // in   innovation: depth, D, E;  prediction: S;  guide: depth, normal
 // out  change: d, r, e, f, u;  correction: A, B, q, and R = r - l(d)^2 of pass 2
 // u is how much smaller the variance of a mean is than that of a sample. The recursion does not know that taps of later
 // passes are correlated: C makes up for it.
-
-#define LEAST_SPREAD 1e-3f  // of E, relative to S: where there is no noise, a difference counts from here on
 
 // What C is for passes 2, 3 and 4, measured on white noise on a plane.
 #define CORRELATED_2 1.0f
@@ -221,9 +219,8 @@ typedef struct {
 // Takes up what is left of the change at a finer scale.
 INLINE void add_change(Correction *c, Mean m, floatv share, floatv least, float threshold) {
     const floatv off = m.residual - c->residual;
-    const floatv noise = max(m.residual_square - m.residual * m.residual, least) * share;
-    const floatv significance = off * off / max(noise, (floatv)(TINY));
-    const floatv b = max(1.0f - threshold * threshold / max(significance, (floatv)(TINY)), (floatv)(0.0f));
+    const floatv variance = max(m.residual_square - m.residual * m.residual, least);
+    const floatv b = believed(off, variance, share, threshold);
     UNROLLED_FOR(k, 3) c->color[k] += b * (m.color[k] - c->color[k]);
     c->residual += b * off;
     c->doubt = max(c->doubt * (1.0f - b) * (1.0f - b), b * b * share);

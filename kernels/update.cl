@@ -16,8 +16,7 @@
 #define MOST_DOUBT 1e3f       // of W: then the new sample is all that counts
 #define ENOUGH_AROUND 1e-3f   // sum of the weights of the pixels around
 #define UNKNOWN (-1.0f)
-#define DIRECT_REACH 3      // 7x7 taps
-#define LEAST_SPREAD 1e-3f  // as in change.cl
+#define DIRECT_REACH 3  // 7x7 taps
 
 // Of one signal.
 typedef struct {
@@ -132,9 +131,8 @@ INLINE Corrections direct(const int4 size, int here, Facet facet, float threshol
                     if (k == LIGHT_LUMINANCE) c->spread += w * off * off;
                 }
                 const floatv residual = load(PLANE(size, innovation, INNOVATION_RESIDUAL, s, 0) + tap);
-                const floatv least = LEAST_SPREAD * load(PLANE(size, prediction, PREDICTION_TONE, s, 0) + tap);
                 c->residual += w * residual;
-                residual_square[s] += w * (residual * residual + least * least);
+                residual_square[s] += w * residual * residual;
             }
         }
     }
@@ -145,9 +143,9 @@ INLINE Corrections direct(const int4 size, int here, Facet facet, float threshol
         UNROLLED_FOR(k, 3) c->color[k] *= scale;
         c->residual *= scale;
         c->spread = max(c->spread * scale - c->color[LIGHT_LUMINANCE] * c->color[LIGHT_LUMINANCE], (floatv)(0.0f));
-        const floatv noise = max(residual_square[s] * scale - c->residual * c->residual, (floatv)(0.0f)) * share;
-        const floatv significance = c->residual * c->residual / max(noise, (floatv)(TINY));
-        const floatv b = max(1.0f - threshold * threshold / max(significance, (floatv)(TINY)), (floatv)(0.0f));
+        const floatv least = LEAST_SPREAD * load(PLANE(size, prediction, PREDICTION_TONE, s, 0) + here);
+        const floatv variance = max(residual_square[s] * scale - c->residual * c->residual, least * least);
+        const floatv b = believed(c->residual, variance, share, threshold);
         UNROLLED_FOR(k, 3) c->color[k] *= b;
         c->residual *= b;
         c->doubt = b * b * share;

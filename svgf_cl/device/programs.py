@@ -34,6 +34,7 @@ HEADERS = (
     "interleaved.clh",
     "surface.clh",
     "reprojection.clh",
+    "significance.clh",
 )
 
 # No fast-math: it would allow the compiler to drop the guards against NaN and infinity. Weights too small to count are

@@ -66,7 +66,7 @@ class Kalman(WaveletFilter):
         "more blurs shadows; from 3 to 5 the picture is within 0.2 dB.",
     )
     change_threshold: float = number(
-        2.7,
+        2.5,
         (0.0, 1e3),
         unit="standard deviations",
         reason="How far the new frame must lie off the history to count as a change of light. Less follows moving "
