@@ -3,6 +3,7 @@
 //   demodulate   c = min(max((radiance - emission) / albedo', 0), MAX_LIGHT)
 //                albedo'_k = max(min(albedo_k, 1), 0.04 max over channels of albedo, 0.02)
 //   modulate     out = sum over signals c * albedo' + emission
+//   standard_error   3 sqrt(sum over signals Var) * l(albedo')
 //
 // in   radiance of each signal; albedo, emission, id where the frame has them; normal, depth
 // out  guide: normal, depth (both 0 on a miss), id, albedo (as a code);  illumination: c
@@ -159,3 +160,30 @@ KERNEL modulate(const int4 size,
     store_color(c, size, x, y, out);
 #endif
 }
+
+#ifdef CONFIDENCE_STANDARD_ERROR
+// The levels take what their taps hold for independent, which it is not, and know nothing of what they blur: measured,
+// the root of the variance that is left is a third of the error.
+#define CALIBRATION 3.0f
+
+KERNEL standard_error(const int4 size,
+#if HAS_ALBEDO
+                      __global const float *restrict albedo,
+#endif
+                      __global const light_t *restrict illumination, __global float *restrict confidence) {
+    const int x = first_column(), y = row();
+    if (x >= size.x || y >= size.y) return;
+    const int here = at(size, x, y);
+    floatv variance = (floatv)(0.0f);
+    UNROLLED_FOR(s, SIGNALS) {
+        variance += load_variance(PLANE(size, illumination, ILLUMINATION_VARIANCE, s, 0) + here);
+    }
+    floatv error = CALIBRATION * sqrt(variance);
+#if HAS_ALBEDO
+    const Color texture = divisor(known_albedo(size, x, y, albedo));
+    error *= luminance(texture.channel[0], texture.channel[1], texture.channel[2]);
+#endif
+    const floatv inside = where(x + LANES < size.x, error, (floatv)(0.0f));
+    store(inside, SHARED_PLANE(size, confidence, CONFIDENCE_STANDARD_ERROR) + here);
+}
+#endif

@@ -18,6 +18,7 @@ from svgf_cl.denoiser import Denoiser
 from svgf_cl.errors import FileError
 from svgf_cl.filters import Settings
 from svgf_cl.filters.filter import Filter
+from svgf_cl.filters.kalman import STANDARD_ERROR
 from svgf_cl.io.atomic import output_folder
 from svgf_cl.io.display import to_bytes, write_image
 from svgf_cl.io.exr import write_image as write_exr
@@ -27,6 +28,8 @@ from svgf_cl.io.sequence import after_gaps, check_leftovers, find_frames
 from svgf_cl.io.shot import read_shot, shared_window
 from svgf_cl.io.window import placed
 
+Plane = npt.NDArray[np.float32]
+
 
 def denoise(
     frames: Frames,
@@ -35,7 +38,7 @@ def denoise(
     set_: SettingTexts = [],  # noqa: B006  # never changed; typer wants the default spelled here
     png: Annotated[bool, typer.Option("--png", help="Also write every picture tone-mapped as PNG.")] = False,
     exposure: Exposure = 0.0,
-    plain: Annotated[bool, typer.Option("--plain", help="Write R G B alone, no other channel.")] = False,
+    plain: Annotated[bool, typer.Option("--plain", help="Write no other channel of the frame's file.")] = False,
     allow_gaps: AllowGaps = False,
     check: Annotated[bool, typer.Option(help="Check the first frames and warn of what is wrong with them.")] = True,
 ) -> None:
@@ -54,6 +57,7 @@ def denoise(
     Examples:
       svgf-cl denoise out/box -o out/box-denoised
       svgf-cl denoise out/box -o out/box-denoised --set iterations=4 --set alpha_color=0.1 --png
+      svgf-cl denoise out/box -o out/box-sure --set standard_error=on   # and the channel standard_error
       svgf-cl denoise out/box -o out/box-eaw --filter eaw --set sigma_color=2
     """
     settings = parse_settings(filter_, set_)
@@ -63,8 +67,8 @@ def denoise(
     check_leftovers(output, [*targets, *shown])
     profiles, kept = [], 0
     results = tracked(denoised(sources, settings, check=check), len(sources), "denoising")
-    for target, (source, picture, profile) in zip(targets, results, strict=True):
-        image = picture_file(picture, source, plain=plain)
+    for target, (source, picture, others, profile) in zip(targets, results, strict=True):
+        image = picture_file(picture, source, plain=plain, others=others)
         if holds(target, image):
             kept += 1
         else:
@@ -89,8 +93,8 @@ def target_paths(sources: Sequence[Path], folder: Path) -> list[Path]:
 
 def denoised(
     sources: Sequence[Path], settings: Filter, *, check: bool
-) -> Iterator[tuple[Image, npt.NDArray[np.float32], dict[str, float]]]:
-    """Read and denoise one frame after the other: its file, its picture, and milliseconds per pass."""
+) -> Iterator[tuple[Image, Plane, dict[str, Plane], dict[str, float]]]:
+    """Read and denoise one frame after the other: its file, picture, further channels, and milliseconds per pass."""
     window, cuts = shared_window(sources), after_gaps(sources)
     first = FirstFrames(len(sources) if check else 0)
     denoiser = None
@@ -102,4 +106,8 @@ def denoised(
         if path in cuts:
             denoiser.reset()
         first.look(frame, after_cut=path in cuts)
-        yield image, placed(denoiser.denoise(frame), window, image.windows.data, 0.0), denoiser.profile()
+        picture = denoiser.denoise(frame)
+        others = {name: denoiser.stage(name) for name in denoiser.stages if name == STANDARD_ERROR}
+        own = image.windows.data
+        cut = {name: placed(plane, window, own, 0.0) for name, plane in others.items()}
+        yield image, placed(picture, window, own, 0.0), cut, denoiser.profile()

@@ -12,9 +12,11 @@ from svgf_cl.filters.pipeline import Life, Number, Pass, Pipeline, Quantity, Res
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.filters.taps import BLOCK, CROSS, HERE, footprint, grid
 from svgf_cl.filters.wavelet import WaveletFilter
-from svgf_cl.settings import documented, number
+from svgf_cl.settings import documented, number, switch
 
 SPACING = 2  # pixels: light is tested for change at every second one of every second row
+STANDARD_ERROR = "standard_error"  # the stage, and the channel of files
+
 STEPS = (1, 2, 4)  # of these, between the taps of the passes after the first
 
 
@@ -86,6 +88,12 @@ class Kalman(WaveletFilter):
         reason="As sigma_normal, for the test. 8, 29 degrees, for the same reason.",
     )
 
+    standard_error: bool = switch(
+        False,
+        reason="Also make the stage standard_error: how far each pixel's luminance may lie off the truth, as a "
+        "standard deviation. Off, because it is another pass.",
+    )
+
     @property
     def change_scalars(self) -> dict[str, Number]:
         """What tells surfaces apart in the test, as kernels take it."""
@@ -116,6 +124,7 @@ class Kalman(WaveletFilter):
                 ),
                 [self.guidance(inputs, "guidance_1"), *[self.guidance(inputs, "guidance")] * (self.iterations - 1)],
             ),
+            *self.confidence_passes(inputs, levels[-1]),
             *self.last_passes(inputs, levels[-1]),
         )
         return Pipeline(passes, inputs.defines | self.macros | {"GUIDED_BY_VARIANCE": 1, "GUIDED_BY_PAST": 1})
@@ -232,6 +241,20 @@ class Kalman(WaveletFilter):
                 access(self.guidance(inputs, "guidance")),
             ),
             operations=operations.guidance(inputs),
+        )
+
+    def confidence_passes(self, inputs: Inputs, filtered: Resource) -> Iterator[Pass]:
+        """The standard error of the result, if it is asked for."""
+        if not self.standard_error:
+            return
+        albedo = (user("albedo"),) if inputs.divides_by_albedo else ()
+        error = Quantity(STANDARD_ERROR, stage=STANDARD_ERROR)
+        yield Pass(
+            "modulate",
+            "standard_error",
+            reads=(*albedo, access(filtered, "illumination", {"variance": HERE})),
+            writes=(access(Resource("confidence", "confidence", (error,))),),
+            operations=operations.standard_error(inputs),
         )
 
     def state(self, inputs: Inputs) -> Resource:

@@ -121,6 +121,11 @@ def modulate(inputs: Inputs) -> float:
     return green + 3 * (len(inputs.signals) - 1 + albedo + emission + 1)
 
 
+def standard_error(inputs: Inputs) -> float:
+    """Section 7: the root of the variances' sum, times the luminance of albedo'."""
+    return len(inputs.signals) + 1 + (3 * (SAFE + 1 + 1) + 4 + DOT + 1 if inputs.divides_by_albedo else 0)
+
+
 def taa() -> float:
     """Section 6: nearest neighbour, tone map, 4x4 taps of history, clamp, blend and back."""
     tone = 8 + 2 + 3

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,13 @@ from svgf_cl.io.window import placed
 Picture = npt.NDArray[np.float32]
 
 
-def picture_file(picture: Picture, source: Image | None = None, *, plain: bool = False) -> Image:
+def picture_file(
+    picture: Picture,
+    source: Image | None = None,
+    *,
+    plain: bool = False,
+    others: Mapping[str, npt.NDArray[np.float32]] | None = None,
+) -> Image:
     """Make the file of a picture.
 
     Parameters
@@ -27,9 +34,11 @@ def picture_file(picture: Picture, source: Image | None = None, *, plain: bool =
     source : Image, optional
         The file of the frame it was made from, of the same data window: what it says, and its other channels, go along.
     plain : bool
-        No channels but ``R G B``.
+        No channels of the source.
+    others : mapping of str to (H, W) float32, optional
+        Channels beside ``R G B``.
     """
-    planes = dict(zip(RGB, np.moveaxis(picture, -1, 0), strict=True))
+    planes = dict(zip(RGB, np.moveaxis(picture, -1, 0), strict=True)) | dict(others or {})
     if source is None:
         return new_image(planes, {})
     kept = source.without(MADE_FROM)
