@@ -4,7 +4,7 @@ from svgf_cl.check import check_frame, check_sequence
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.device.tuning import Tuning
 from svgf_cl.errors import ArgumentError, DeviceError, FileError, FrameError, SettingsError, SvgfError
-from svgf_cl.filters import Eaw, Settings
+from svgf_cl.filters import Eaw, Kalman, Settings
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Frame
 
@@ -17,6 +17,7 @@ __all__ = [
     "Frame",
     "FrameError",
     "Inputs",
+    "Kalman",
     "Settings",
     "SettingsError",
     "SvgfError",

@@ -30,7 +30,7 @@ from svgf_cl.device.process import check_process, is_forked
 from svgf_cl.device.tuning import Tuning
 from svgf_cl.device.user_arrays import UserArrays, check_out
 from svgf_cl.errors import ArgumentError, SvgfError, shown
-from svgf_cl.filters import Settings
+from svgf_cl.filters import DEFAULT
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.pipeline import OUT, Pipeline
 from svgf_cl.filters.signals import Inputs
@@ -55,7 +55,7 @@ class Denoiser:
     shape : (int, int)
         (height, width) in pixels, each >= 1.
     settings : Filter, optional
-        Which filter, and its parameters: `Settings` for SVGF, the default, `Eaw`, and others of `svgf_cl.filters`.
+        Which filter, and its parameters: `Kalman`, the default, `Settings` for SVGF, `Eaw`.
     queue : pyopencl.CommandQueue, optional
         In-order queue to work on; by default one on the fastest working device
         (`svgf_cl.device.devices.default_queue`).
@@ -90,7 +90,7 @@ class Denoiser:
         after_pass: AfterPass | None = None,
     ) -> None:
         self._shape = check_shape(shape)
-        self._settings = Settings() if settings is None else check_filter(settings)
+        self._settings = DEFAULT() if settings is None else check_filter(settings)
         self._queue = check_queue(queue)
         self._tuning = check_tuning(tuning, self._queue.device)
         self._after_pass = check_hook(after_pass)

@@ -11,7 +11,7 @@ import typer
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import Earlier, FilterName, SettingTexts, parse_settings, parse_size
 from svgf_cl.errors import SvgfError
-from svgf_cl.filters import Settings
+from svgf_cl.filters import DEFAULT
 from svgf_cl.io.atomic import output_folder
 
 
@@ -28,7 +28,7 @@ def bench(
             "-o", "--output", metavar="DIR", help="Also write results.json, report.html and summary.png there."
         ),
     ] = None,
-    filter_: FilterName = Settings.name,
+    filter_: FilterName = DEFAULT.name,
     set_: SettingTexts = [],  # noqa: B006
 ) -> None:
     """Time every kernel and the whole frame, against the device's own ceilings, beside the error.

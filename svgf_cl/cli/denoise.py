@@ -16,7 +16,7 @@ from svgf_cl.cli.options import AllowGaps, Exposure, FilterName, Frames, Output,
 from svgf_cl.cli.remarks import FirstFrames, reading, require_surfaces
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.errors import FileError
-from svgf_cl.filters import Settings
+from svgf_cl.filters import DEFAULT
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.kalman import STANDARD_ERROR
 from svgf_cl.io.atomic import output_folder
@@ -34,7 +34,7 @@ Plane = npt.NDArray[np.float32]
 def denoise(
     frames: Frames,
     output: Output,
-    filter_: FilterName = Settings.name,
+    filter_: FilterName = DEFAULT.name,
     set_: SettingTexts = [],  # noqa: B006  # never changed; typer wants the default spelled here
     png: Annotated[bool, typer.Option("--png", help="Also write every picture tone-mapped as PNG.")] = False,
     exposure: Exposure = 0.0,

@@ -69,7 +69,7 @@ def parse_size(text: str) -> tuple[int, int]:
 
 
 def parse_settings(filter_: str, texts: Iterable[str]) -> Filter:
-    """Read ``"svgf", ["iterations=4", "taa=on"]`` as `Settings`; `SettingsError` for a wrong name or value."""
+    """Read ``"svgf", ["iterations=4", "taa=on"]`` as a `Filter`; `SettingsError` for a wrong name or value."""
     if filter_ not in FILTERS:
         raise SettingsError(f"--filter: expected {' or '.join(FILTERS)}, got {shown(filter_)}")
     kind = FILTERS[filter_]
