@@ -18,7 +18,6 @@ from benchmarks.command import run
 from benchmarks.footage import FOOTAGE
 from benchmarks.tracing import picture
 from benchmarks.tracing import suite as tracing
-from svgf_cl import Settings
 from svgf_cl.bench import report, tables
 from svgf_cl.bench.cases import USUAL_SHAPE
 from svgf_cl.bench.report import Section
@@ -27,6 +26,7 @@ from svgf_cl.bench.suite import Suite
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.compare.metrics import require_flip
 from svgf_cl.errors import SvgfError
+from svgf_cl.filters import DEFAULT
 from svgf_cl.io.atomic import output_folder
 
 RACE_ROUNDS = 20
@@ -69,7 +69,7 @@ def raced() -> tuple[Sequence[Result], Section]:
         oidn.require_oidn()
     except SvgfError as error:
         return (), Section(versus_oidn.TITLE, notes=[str(error)])
-    found = versus_oidn.compared(USUAL_SHAPE, Settings(), RACE_ROUNDS)
+    found = versus_oidn.compared(USUAL_SHAPE, DEFAULT(), RACE_ROUNDS)
     return found.results, found.section
 
 

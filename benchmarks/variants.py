@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from svgf_cl import Settings
+from svgf_cl import Kalman, Settings
+from svgf_cl.filters import DEFAULT
+from svgf_cl.filters.temporal import TemporalFilter
 
 
 @dataclass(frozen=True)
@@ -15,36 +17,35 @@ class Variant:
     ----------
     name : str
         What differs from the default.
-    settings : Settings
+    settings : TemporalFilter
     signals : int, 1 or 2
         2 filters direct and indirect light apart.
     """
 
     name: str
-    settings: Settings = field(default_factory=Settings)
+    settings: TemporalFilter = field(default_factory=DEFAULT)
     signals: int = 1
 
 
-DEFAULT = Variant("default")
-
 VARIANTS = (
-    DEFAULT,
-    Variant("fast", Settings(precision="fast")),
-    Variant("half guides", Settings(half_guides=True)),
-    Variant("half history", Settings(half_history=True)),
-    Variant("half both", Settings(half_guides=True, half_history=True)),
-    Variant("5x5", Settings(taps="5x5")),
-    Variant("4 levels", Settings(iterations=4)),
-    Variant("3 levels", Settings(iterations=3)),
+    Variant("default"),
+    Variant("fast", Kalman(precision="fast")),
+    Variant("half guides", Kalman(half_guides=True)),
+    Variant("half history", Kalman(half_history=True)),
+    Variant("half both", Kalman(half_guides=True, half_history=True)),
+    Variant("5x5", Kalman(taps="5x5")),
+    Variant("5 levels", Kalman(iterations=5)),
+    Variant("3 levels", Kalman(iterations=3)),
     Variant("two signals", signals=2),
-    Variant("5x5, fast", Settings(taps="5x5", precision="fast")),
-    Variant("5x5, 3 levels", Settings(taps="5x5", iterations=3)),
-    Variant("fast, half", Settings(precision="fast", half_guides=True, half_history=True)),
-    Variant("fast, 4 levels", Settings(precision="fast", iterations=4)),
-    Variant("fast, 3 levels", Settings(precision="fast", iterations=3)),
-    Variant("TAA", Settings(taa=True)),
-    Variant("TAA, fast", Settings(taa=True, precision="fast")),
-    Variant("TAA, fast, 3 levels", Settings(taa=True, precision="fast", iterations=3)),
-    Variant("TAA, 5x5", Settings(taa=True, taps="5x5")),
-    Variant("TAA, two signals", Settings(taa=True), signals=2),
+    Variant("fast, 3 levels", Kalman(precision="fast", iterations=3)),
+    Variant("SVGF", Settings()),
+    Variant("SVGF, fast", Settings(precision="fast")),
+    Variant("SVGF, 5x5", Settings(taps="5x5")),
+    Variant("SVGF, 3 levels", Settings(iterations=3)),
+    Variant("SVGF, two signals", Settings(), signals=2),
+    Variant("TAA", Kalman(taa=True)),
+    Variant("TAA, fast", Kalman(taa=True, precision="fast")),
+    Variant("TAA, two signals", Kalman(taa=True), signals=2),
+    Variant("SVGF, TAA", Settings(taa=True)),
+    Variant("SVGF, TAA, 5x5", Settings(taa=True, taps="5x5")),
 )

@@ -3,8 +3,8 @@
 Speed: in every round each denoiser filters the same frame of the built-in room once, after a warm-up.
 
 - "svgf_cl ...", host clock: the whole call of `Denoiser.denoise` from numpy arrays into a numpy array, all copies
-  included; event clock: the passes of that same call, from OpenCL events. "5x5": the paper's taps; "default": the
-  default settings, or others.
+  included; event clock: the passes of that same call, from OpenCL events. "5x5": SVGF with the paper's taps; "SVGF":
+  with 3x3 taps; "default": the default filter, or that with other settings.
 - "OIDN ...": ``oidnExecuteFilter`` alone, HDR, with albedo and normal, in place on images that were filled before.
 
 A ratio is that of two times of one round; what counts is its median over the rounds. Memory is what a denoiser holds
@@ -44,6 +44,7 @@ from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import SettingTexts, parse_settings, parse_size
 from svgf_cl.compare.metrics import require_flip
 from svgf_cl.device import devices
+from svgf_cl.filters import DEFAULT
 from svgf_cl.filters.filter import Filter
 from svgf_cl.frame import Shape, extent
 from svgf_cl.io.atomic import written_whole
@@ -53,8 +54,8 @@ AREA, _ = FOOTAGE
 
 TITLE = "Against Open Image Denoise"
 
-# The settings that the bars were set for, and those of a user who sets nothing.
-PAPER = Settings(taps="5x5")
+# Filters that take part beside that of a user who sets nothing: as in the paper, and with 3x3 taps.
+OTHERS = {"5x5": Settings(taps="5x5"), "SVGF": Settings()}
 
 
 @dataclass(frozen=True)
@@ -115,11 +116,11 @@ def versus_oidn(
 ) -> None:
     """Time svgf_cl and Open Image Denoise by turns, hold the ratios against the bars, and compare their errors.
 
-    svgf_cl takes part with 5x5 taps, which the bars were set for, and with its default settings, or those of --set.
+    svgf_cl takes part with SVGF, of 5x5 and of 3x3 taps, and with its default filter, to which --set applies.
     PYOPENCL_CTX chooses its device. OIDN gets as many CPU threads as that device has, or all where it is no CPU.
     The truth takes a minute or two to render the first time, and is kept in the user's cache folder.
     """
-    found = compared(parse_size(size), parse_settings(Settings.name, set_), rounds, clean_aux=clean_aux)
+    found = compared(parse_size(size), parse_settings(DEFAULT.name, set_), rounds, clean_aux=clean_aux)
     device = devices.choose(devices.list_devices())
     for table in [*found.tables, bar_table(found.results, {device.selector: device.platform})]:
         print(f"{table.title}:\n\n{markdown(table)}") if markdown_ else show(table.title, table.columns, table.rows)
@@ -129,9 +130,10 @@ def versus_oidn(
 
 
 def compared(shape: Shape, settings: Filter, rounds: int, *, clean_aux: bool = False) -> Comparison:
-    """Race svgf_cl, as in the paper and with `settings`, against OIDN, and hold all against the truth."""
+    """Race `OTHERS` and svgf_cl with `settings` against OIDN, and hold all against the truth."""
     require_flip()
-    denoisers = {f"svgf_cl {name}": Denoiser(shape, settings=s) for name, s in (("5x5", PAPER), ("default", settings))}
+    chosen = {**OTHERS, "default": settings}
+    denoisers = {f"svgf_cl {name}": Denoiser(shape, settings=each) for name, each in chosen.items()}
     device = next(iter(denoisers.values())).queue.device
     filters = oidn_filters(shape, device, clean_aux)
     with progress_bar("speed", rounds) as advance:
@@ -140,7 +142,7 @@ def compared(shape: Shape, settings: Filter, rounds: int, *, clean_aux: bool = F
     with progress_bar("error", footage.chunks + footage.frames) as advance:
         errors = qualities(denoisers, filters, footage, advance)
     about = provenance(device) | {
-        "svgf_cl default": "as shipped" if settings == Settings() else str(settings),
+        "svgf_cl default": "as shipped" if settings == DEFAULT() else str(settings),
         "OIDN": filters["OIDN high"].description + (", clean aux" if clean_aux else ""),
         "size": extent(shape),
         "rounds": str(rounds),

@@ -11,4 +11,4 @@ __all__ = ["DEFAULT", "FILTERS", "Eaw", "Kalman", "Settings"]
 FILTERS: dict[str, type[Filter]] = {each.name: each for each in (Kalman, Settings, Eaw)}
 
 # What is used where nobody chooses: no other is better on any scene that was tried (docs/results.md).
-DEFAULT: type[Filter] = Kalman
+DEFAULT = Kalman

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from benchmarks.variants import DEFAULT, VARIANTS
-from svgf_cl import Settings
+from benchmarks.variants import VARIANTS
+from svgf_cl.filters import DEFAULT
 
 
 def test_no_two_variants_have_one_name_or_do_the_same() -> None:
@@ -12,5 +12,4 @@ def test_no_two_variants_have_one_name_or_do_the_same() -> None:
 
 
 def test_the_first_variant_is_the_default() -> None:
-    assert VARIANTS[0] is DEFAULT
-    assert (DEFAULT.settings, DEFAULT.signals) == (Settings(), 1)
+    assert (VARIANTS[0].settings, VARIANTS[0].signals) == (DEFAULT(), 1)

@@ -73,5 +73,12 @@ def test_it_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[
     assert "iterations=2" in record["about"]["svgf_cl default"]
     assert {len(samples) for samples in record["seconds"].values()} == {2}
     assert list(record["error"]) == ["noisy", *record["bytes"]]
-    assert list(record["bytes"]) == ["svgf_cl 5x5", "svgf_cl default", "OIDN high", "OIDN balanced", "OIDN fast"]
+    assert list(record["bytes"]) == [
+        "svgf_cl 5x5",
+        "svgf_cl SVGF",
+        "svgf_cl default",
+        "OIDN high",
+        "OIDN balanced",
+        "OIDN fast",
+    ]
     assert record["error"]["svgf_cl 5x5"]["psnr"] > record["error"]["noisy"]["psnr"]
