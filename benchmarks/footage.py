@@ -15,11 +15,11 @@ from svgf_cl_tracer.references import chunks
 
 @dataclass(frozen=True)
 class Footage:
-    """A camera moving through a scene at 1 sample per pixel, and the truth about part of its last two frames.
+    """A camera moving through a scene at 1 sample per pixel, and the truth about part of its last frames.
 
-    Two frames in a row, for the temporal error; the last, because history is longest there. Of these a band of rows, so
-    that a large picture's truth can be had in minutes. Each truth is rendered as two independent halves: what they
-    differ by is its own noise.
+    At least two frames in a row, for the temporal error; the last, because history is longest there. Of these a band of
+    rows, so that a large picture's truth can be had in minutes. Each truth is rendered as two independent halves: what
+    they differ by is its own noise.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ class Footage:
         True: rays go through another point of the pixel in every frame, and the truth is the mean over the pixel's
         area. False: all rays, the truth's too, go through the pixel's centre, so that there is nothing to antialias.
     scene : str
-        Name of a built-in scene, or a glTF, GLB or OBJ file.
+        Name of a built-in scene, a folder with a scene.json, or a glTF, GLB or OBJ file.
     cameras : tuple of Camera
         Keyframes of the camera's path; none for the scene's own path.
     sky : (float, float, float), optional
@@ -40,6 +40,8 @@ class Footage:
         Where the judged rows begin and end, in picture heights. In the Cornell box these cross walls, a deep shadow,
         the ball, the ring, both blocks, the lattice and the tiles.
     frames : int, >= 2
+    last : int, 2..frames
+        How many of the last frames have a truth.
     spp : int, a multiple of 2 * CHUNK
         Samples per pixel of the truth.
     """
@@ -52,12 +54,13 @@ class Footage:
     shape: Shape = (720, 1280)
     band: tuple[float, float] = (0.66, 0.78)
     frames: int = 24
+    last: int = 2
     spp: int = 512
 
     @property
-    def judged(self) -> tuple[int, int]:
+    def judged(self) -> range:
         """The numbers of the frames that have a truth."""
-        return self.frames - 2, self.frames - 1
+        return range(self.frames - self.last, self.frames)
 
     @property
     def rows(self) -> tuple[int, int]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from importlib.metadata import version
 
 import numpy as np
 import numpy.typing as npt
+import pyopencl as cl
 
 from svgf_cl import Frame
 from svgf_cl.errors import SvgfError
@@ -93,6 +95,12 @@ class OidnFilter:
         numbers = [str(self._device.get_int(f"version{part}")) for part in ("Major", "Minor", "Patch")]
         threads = self._device.get_int("numThreads")
         return f"{'.'.join(numbers)} (pyoidn {version('pyoidn')}), {threads} threads"
+
+
+def threads_beside(device: cl.Device) -> int:
+    """As many threads as a CPU device has; all where `device` is no CPU."""
+    is_cpu = bool(device.type & cl.device_type.CPU)
+    return device.max_compute_units if is_cpu else os.cpu_count() or 1
 
 
 def require_oidn() -> None:

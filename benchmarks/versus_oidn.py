@@ -18,7 +18,6 @@ sees one frame; svgf_cl knows those before it.
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -31,7 +30,7 @@ from benchmarks.bars import bar_table
 from benchmarks.command import run
 from benchmarks.footage import FOOTAGE, Footage
 from benchmarks.measurements import Quality, quality
-from benchmarks.oidn import QUALITIES, OidnFilter
+from benchmarks.oidn import QUALITIES, OidnFilter, threads_beside
 from benchmarks.presentation import markdown
 from benchmarks.provenance import provenance
 from benchmarks.race import Times, race, results
@@ -155,8 +154,7 @@ def compared(shape: Shape, settings: Filter, rounds: int, *, clean_aux: bool = F
 
 def oidn_filters(shape: Shape, device: cl.Device, clean_aux: bool) -> dict[str, OidnFilter]:
     """OIDN at every quality, with as many threads as a CPU device has; with all where `device` is no CPU."""
-    is_cpu = bool(device.type & cl.device_type.CPU)
-    threads = device.max_compute_units if is_cpu else os.cpu_count() or 1
+    threads = threads_beside(device)
     return {f"OIDN {quality}": OidnFilter(shape, quality, threads, clean_aux=clean_aux) for quality in QUALITIES}
 
 

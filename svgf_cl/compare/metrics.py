@@ -62,8 +62,12 @@ def mean(metrics: Sequence[Metrics]) -> Metrics:
 
 def psnr(shown: Linear, wanted: Linear) -> float:
     """Return the peak signal-to-noise ratio of two display-referred pictures in dB, peak 1."""
-    error = float(np.mean(np.square(shown - wanted)))
-    return float(-10 * np.log10(error)) if error else float("inf")
+    return decibels(float(np.mean(np.square(shown - wanted))))
+
+
+def decibels(squared_error: float) -> float:
+    """Return the peak signal-to-noise ratio of a mean squared error in dB, peak 1; inf where it is not above 0."""
+    return float("inf") if squared_error <= 0 else float(-10 * np.log10(squared_error))
 
 
 def ssim(shown: Linear, wanted: Linear) -> float:

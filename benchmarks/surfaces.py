@@ -1,0 +1,68 @@
+"""Where frames show one surface, light that changes, and no lamp."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from svgf_cl.compare.halves import Mask
+from svgf_cl.compare.kept import RADIUS, Plane, window_mean
+from svgf_cl.frame import Frame
+from svgf_cl.io.display import Linear
+from svgf_cl.oracle.albedo import divisor
+from svgf_cl.oracle.taps import luminance, shifted, square
+
+SAME_NORMAL = 0.9  # cosine from which two pixels show one surface
+SAME_ALBEDO = 0.02
+STILL = 0.5  # pixels of motion
+CHANGED = 0.1  # of the light in a window
+
+
+def one_surface(frame: Frame, *, one_colour: bool = True) -> Mask:
+    """Where a pixel and all 24 around it show the same object, turned the same way, (H, W); and of the same colour."""
+    hit: Mask = frame.depth < np.inf
+    same: Mask = hit.copy()
+    for offset in square(RADIUS):
+        y, x, inside = shifted(offset, frame.shape)
+        same &= inside & hit[y, x] & (frame.id[y, x] == frame.id)
+        same &= (frame.normal[y, x] * frame.normal).sum(axis=-1) > SAME_NORMAL
+        if one_colour:
+            same &= np.abs(frame.albedo[y, x] - frame.albedo).max(axis=-1) < SAME_ALBEDO
+    return same
+
+
+def reflecting(frame: Frame) -> Mask:
+    """Where neither a pixel nor one of the eight around it shows a lamp or the sky, (H, W)."""
+    dark: Mask = (frame.emission == 0).all(axis=-1) & (frame.depth < np.inf)
+    result: Mask = dark.copy()
+    for offset in square(1):
+        y, x, _ = shifted(offset, frame.shape)
+        result &= dark[y, x]
+    return result
+
+
+def without_albedo(picture: Linear, frame: Frame) -> Plane:
+    """Luminance of a picture's light, demodulated as the filters do it, (H, W)."""
+    return luminance(np.asarray(picture, np.float64) / divisor(np.asarray(frame.albedo, np.float64)))
+
+
+def still(earlier: Frame, later: Frame) -> NDArray[np.float64]:
+    """1 where the later frame shows what the earlier one does at that pixel, else 0, (H, W)."""
+    same: Mask = (earlier.id == later.id) & (np.hypot(later.motion[..., 0], later.motion[..., 1]) < STILL)
+    return same.astype(np.float64)
+
+
+def relit(earlier: tuple[Plane, Plane], later: tuple[Plane, Plane], unmoved: NDArray[np.float64]) -> Mask:
+    """Around which pixels nothing moves but light, by `CHANGED` of itself on average, (H, W).
+
+    Parameters
+    ----------
+    earlier, later : two of (H, W)
+        Light of two consecutive frames, as known from each half of the truth: its noise is no change.
+    unmoved : (H, W)
+        As `still` has it.
+    """
+    first, second = (after - before for before, after in zip(earlier, later, strict=True))
+    mean = window_mean(0.5 * (later[0] + later[1]))
+    changed: Mask = window_mean(first * second) > (CHANGED * mean) ** 2
+    return changed & (window_mean(unmoved) > 1 - 1e-9)

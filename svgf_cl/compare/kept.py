@@ -1,0 +1,100 @@
+"""How much of the truth's contrast a picture keeps: the slope of the one on the other, where the truth has contrast.
+
+Both measures are shares: 1 where all is kept, 0 where the picture is flat; more than 1 where contrast is exaggerated.
+
+=========  =====================  =====================================================================================
+measure    computed on            definition
+=========  =====================  =====================================================================================
+sharpness  display-referred       ``sum(g . g1) / sum(g2 . g1)``, g, g1 and g2 being Sobel's gradients of the luminance
+                                  of picture and halves: how sharp edges are
+contrast   luminance of light     ``sum(cov(a, h1) / m1**2) / sum(cov(h2, h1) / m1**2)`` over windows of 5x5 pixels, m1
+           without albedo,        being the mean of h1 in the window: lit minus shadow over that of the truth, wherever
+           linear                 light varies over a surface, each window by its contrast relative to its own light
+=========  =====================  =====================================================================================
+
+Summed over the `SHARE` of the pixels or windows where h1 has most. The halves h1 and h2 of the truth are independent,
+as in `svgf_cl.compare.halves`. h1 chooses and weighs; its noise is in both sums alike, and that of h2 and of the
+picture has no direction in common with it. So noise of neither truth nor picture counts as contrast: h1 is what
+statistics calls an instrumental variable. Then the halves change places, and all is added up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+from svgf_cl.compare.halves import Mask, Pair
+from svgf_cl.compare.share import Share
+from svgf_cl.frame import LUMINANCE
+from svgf_cl.io.display import Linear
+
+SHARE = 0.05
+RADIUS = 2  # of a window, in pixels
+
+Plane = NDArray[np.float64]
+Product = Callable[[NDArray[np.floating], NDArray[np.floating]], Plane]
+
+
+def sharpness(shown: Linear, halves: Pair, where: Mask) -> Share:
+    """How sharp the strongest edges among the pixels `where` (H, W) are, of display-referred pictures (H, W, 3)."""
+    return slope(gradients_along, shown, halves, where)
+
+
+def contrast(light: Plane, halves: tuple[Plane, Plane], where: Mask) -> Share:
+    """How much contrast light (H, W) keeps in the windows around the pixels `where` (H, W).
+
+    `where` has to be such that each window shows one surface: other edges than those of light are not what is meant.
+    """
+    return slope(relative_covariance, light, halves, where)
+
+
+def slope(product: Product, picture: Linear, halves: Pair, where: Mask) -> Share:
+    """Slope of picture on truth, by a product (H, W) of two images, where its square is largest in the truth."""
+    total = Share()
+    for chooser, other in (halves, halves[::-1]):
+        strongest = largest(product(chooser, chooser), where)
+        part, whole = (product(image, chooser)[strongest] for image in (picture, other))
+        total += Share(float(part.sum()), float(whole.sum()))
+    return total
+
+
+def largest(strength: Plane, where: Mask) -> Mask:
+    """Among the pixels `where`, the `SHARE` where strength is largest, and above 0."""
+    if not where.any():
+        return where
+    chosen: Mask = where & (strength > 0) & (strength >= np.quantile(strength[where], 1 - SHARE))
+    return chosen
+
+
+def gradients_along(shown: Linear, chooser: Linear) -> Plane:
+    """Inner product of two pictures' gradients, (H, W)."""
+    product: Plane = (gradient(shown) * gradient(chooser)).sum(axis=-1)
+    return product
+
+
+def gradient(shown: Linear) -> NDArray[np.float64]:
+    """Sobel's gradient of luminance, (H, W, 2); 0 at the picture's border."""
+    luminance = np.asarray(shown, np.float64) @ np.array(LUMINANCE)
+    smooth_down = luminance[:-2] + 2 * luminance[1:-1] + luminance[2:]
+    smooth_along = luminance[:, :-2] + 2 * luminance[:, 1:-1] + luminance[:, 2:]
+    along, down = smooth_down[:, 2:] - smooth_down[:, :-2], smooth_along[2:] - smooth_along[:-2]
+    return np.pad(np.stack((along, down), axis=-1) / 8, ((1, 1), (1, 1), (0, 0)))
+
+
+def relative_covariance(light: NDArray[np.floating], chooser: NDArray[np.floating]) -> Plane:
+    """Covariance of two planes within each window, over the chooser's squared mean there, (H, W); 0 where that is."""
+    mean = window_mean(chooser)
+    covariance = window_mean(light * chooser) - window_mean(light) * mean
+    return np.divide(covariance, mean**2, out=np.zeros_like(mean), where=mean > 0)
+
+
+def window_mean(plane: NDArray[np.floating]) -> Plane:
+    """Mean over the window around each pixel, (H, W); 0 where the window reaches beyond the picture."""
+    side = 2 * RADIUS + 1
+    if min(plane.shape) < side:
+        return np.zeros(plane.shape)
+    inside = sliding_window_view(np.asarray(plane, np.float64), (side, side)).mean(axis=(-2, -1))
+    return np.pad(inside, RADIUS)
