@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import asdict, dataclass, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -60,16 +59,6 @@ class Result:
     truth_noise: float
     rows: Mapping[str, Row]
 
-    @property
-    def record(self) -> dict[str, Any]:
-        """What a JSON file holds of it."""
-        frames = [self.frames.start, self.frames.stop]
-        rows = {
-            name: asdict(row.findings) | {"call": row.call, "device": row.device} for name, row in self.rows.items()
-        }
-        about = {"scene": self.scene, "jitter": self.jitter, "frames": frames, "truth_noise": self.truth_noise}
-        return {**about, "rows": rows}
-
 
 def compete(
     footage: Footage, rivals: Mapping[str, Rival], pictured: Collection[int], advance: Callable[[], None]
@@ -107,15 +96,16 @@ def compete(
 
 
 def times(rivals: Mapping[str, Rival], frames: range) -> tuple[dict[str, float], dict[str, float]]:
-    """Milliseconds of a call and on the device, over the judged frames, steady where the machine is not."""
-    timed = slice(frames.start, frames.stop)
-    call = {name: r.call[timed] for name, r in rivals.items() if isinstance(r.maker, Denoiser | OidnFilter)}
-    device = {name: r.device[timed] for name, r in rivals.items() if r.device}
-    medians = (paired_medians(list(each.values())) for each in (call, device))
-    of_call, of_device = (
-        dict(zip(each, found, strict=True)) for each, found in zip((call, device), medians, strict=True)
-    )
-    return of_call, of_device
+    """Milliseconds of a call and on the device, over the judged frames."""
+    judged = slice(frames.start, frames.stop)
+    call = {name: r.call[judged] for name, r in rivals.items() if isinstance(r.maker, Denoiser | OidnFilter)}
+    device = {name: r.device[judged] for name, r in rivals.items() if r.device}
+    return steady(call), steady(device)
+
+
+def steady(samples: Mapping[str, list[float]]) -> dict[str, float]:
+    """`paired_medians` by name."""
+    return dict(zip(samples, paired_medians(list(samples.values())), strict=True)) if samples else {}
 
 
 def truth_noise(halves: list[Pair]) -> float:

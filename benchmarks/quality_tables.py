@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -19,8 +20,8 @@ from svgf_cl.io.atomic import written_whole
 RAYS = {False: "rays through pixel centres", True: "jittered rays"}
 
 COLUMNS = (
-    *("PSNR dB ↑", "SSIM ↑", "FLIP ↓", "relMSE ↓", "temporal ↓", "on surfaces ↓", "bias %"),
-    *("edges %", "shadows %", "moving shadows %", "lag", "call ms", "device ms"),
+    *("PSNR dB ↑", "SSIM ↑", "FLIP ↓", "relMSE ↓", "temporal ↓", "surfaces ↓", "bias %"),
+    *("edges %", "shadows %", "moving %", "lag", "call ms", "device ms"),
 )
 
 
@@ -55,7 +56,7 @@ def figures(row: Row) -> list[str]:
     errors = [f"{found.psnr:.2f}", f"{found.ssim:.3f}", f"{found.flip:.4f}", f"{found.relmse:.4f}"]
     changes = [written(change, ".5f") for change in (found.temporal, found.temporal_on_surfaces)]
     kept = [written(100 * share, ".0f") for share in (found.edges, found.shadows, found.moving_shadows)]
-    lags = ", ".join("never" if frames is None else str(frames) for frames in found.lags)
+    lags = ", ".join("∞" if frames is None else str(frames) for frames in found.lags)
     times = [written(math.nan if time is None else time, ".2f") for time in (row.call, row.device)]
     return [*errors, *changes, written(100 * found.bias, "+.1f"), *kept, lags, *times]
 
@@ -86,6 +87,20 @@ def summary_table(results: Sequence[Result], measure: Measure) -> Table:
 
 def write_json(path: Path, about: dict[str, str], results: Sequence[Result]) -> None:
     """Write everything that was found so far."""
-    record = {"about": about, "scenes": [result.record for result in results]}
+    record = {"about": about, "scenes": [scene_record(result) for result in results]}
     with written_whole(path) as aside:
-        aside.write_text(json.dumps(record, indent=1), encoding="utf-8")
+        aside.write_text(json.dumps(record, indent=1, allow_nan=False), encoding="utf-8")
+
+
+def scene_record(result: Result) -> dict[str, Any]:
+    """A scene as JSON has it: a figure that there is not is null."""
+    rows = {name: asdict(row.findings) | {"call": row.call, "device": row.device} for name, row in result.rows.items()}
+    finite = {name: {key: finite_or_none(value) for key, value in row.items()} for name, row in rows.items()}
+    frames = [result.frames.start, result.frames.stop]
+    about = {"scene": result.scene, "jitter": result.jitter, "frames": frames}
+    return {**about, "truth_noise": finite_or_none(result.truth_noise), "rows": finite}
+
+
+def finite_or_none(value: Any) -> Any:
+    """What JSON can hold."""
+    return None if isinstance(value, float) and not math.isfinite(value) else value

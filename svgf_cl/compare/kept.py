@@ -7,13 +7,13 @@ measure    computed on            definition
 =========  =====================  =====================================================================================
 sharpness  display-referred       ``sum(g . g1) / sum(g2 . g1)``, g, g1 and g2 being Sobel's gradients of the luminance
                                   of picture and halves: how sharp edges are
-contrast   luminance of light     ``sum(cov(a, h1) / m1**2) / sum(cov(h2, h1) / m1**2)`` over windows of 5x5 pixels, m1
-           without albedo,        being the mean of h1 in the window: lit minus shadow over that of the truth, wherever
-           linear                 light varies over a surface, each window by its contrast relative to its own light
+contrast   luminance of light     ``sum(cov(a / m, h1 / m1)) / sum(cov(h2 / m2, h1 / m1))`` over windows of 5x5 pixels,
+           without albedo,        m, m1 and m2 being each one's mean in the window: lit minus shadow, relative to the
+           linear                 light there, over that of the truth; wherever light varies over a surface
 =========  =====================  =====================================================================================
 
-Summed over the `SHARE` of the pixels or windows where h1 has most. The halves h1 and h2 of the truth are independent,
-as in `svgf_cl.compare.halves`. h1 chooses and weighs; its noise is in both sums alike, and that of h2 and of the
+Sums are over the `SHARE` of the pixels or windows where h1 has most. The halves h1 and h2 of the truth are independent,
+as in `svgf_cl.compare.halves`. h1 chooses; its noise is in both sums alike, and that of h2 and of the
 picture has no direction in common with it. So noise of neither truth nor picture counts as contrast: h1 is what
 statistics calls an instrumental variable. Then the halves change places, and all is added up.
 """
@@ -84,17 +84,18 @@ def gradient(shown: Linear) -> NDArray[np.float64]:
     return np.pad(np.stack((along, down), axis=-1) / 8, ((1, 1), (1, 1), (0, 0)))
 
 
-def relative_covariance(light: NDArray[np.floating], chooser: NDArray[np.floating]) -> Plane:
-    """Covariance of two planes within each window, over the chooser's squared mean there, (H, W); 0 where that is."""
-    mean = window_mean(chooser)
-    covariance = window_mean(light * chooser) - window_mean(light) * mean
-    return np.divide(covariance, mean**2, out=np.zeros_like(mean), where=mean > 0)
+def relative_covariance(light: NDArray[np.floating], other: NDArray[np.floating]) -> Plane:
+    """Covariance of two planes within each window, each relative to its mean there, (H, W); 0 where a mean is."""
+    means = window_mean(light) * window_mean(other)
+    return np.divide(window_mean(light * other) - means, means, out=np.zeros_like(means), where=means > 0)
 
 
 def window_mean(plane: NDArray[np.floating]) -> Plane:
     """Mean over the window around each pixel, (H, W); 0 where the window reaches beyond the picture."""
-    side = 2 * RADIUS + 1
-    if min(plane.shape) < side:
-        return np.zeros(plane.shape)
-    inside = sliding_window_view(np.asarray(plane, np.float64), (side, side)).mean(axis=(-2, -1))
-    return np.pad(inside, RADIUS)
+    mean = np.zeros(plane.shape)
+    if min(plane.shape) > 2 * RADIUS:
+        ones = np.ones(2 * RADIUS + 1)
+        down = sliding_window_view(np.asarray(plane, np.float64), ones.size, axis=0) @ ones
+        inner = slice(RADIUS, -RADIUS)
+        mean[inner, inner] = sliding_window_view(down, ones.size, axis=1) @ ones / ones.size**2
+    return mean

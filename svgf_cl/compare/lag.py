@@ -1,12 +1,14 @@
 """Lag: how many frames a picture takes to follow a change of light.
 
 Between frame n-1 and n, a lamp is switched: the truth goes from b to a. How far a picture p of a later frame has
-followed is the slope of ``p - b`` on ``a - b``, each pixel's light relative to its own, w = 1 / (a + b)^2:
+followed is the slope of ``p - b`` on ``a - b``:
 
-``response = sum(w (p - b)(a - b)) / sum(w (a - b)^2)``
+``response = sum(w (p - b)(a - b)) / sum(w (a - b)^2)``, ``w = 1 / (a + b + mean(a + b))^2``
+
+The weight lets bright pixels count little more than others; the mean in it keeps the darkest from counting for all.
 
 0: nothing is followed yet; 1: all. The truth's own noise is kept out by its halves, as in `svgf_cl.compare.halves`: no
-two factors of a product are of the same half. `lag` is the number of frames from n on until the response is `FOLLOWED`;
+two factors of a product are of one half. `lag` is the number of frames from n on until the response is `FOLLOWED`;
 0 where frame n itself has it.
 """
 
@@ -14,8 +16,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-
-import numpy as np
 
 from svgf_cl.compare.halves import Mask, Pair
 from svgf_cl.compare.share import Share
@@ -33,9 +33,11 @@ def steps(levels: Sequence[float]) -> list[int]:
 
 def response(picture: Linear, before: Pair, after: Pair, where: Mask) -> Share:
     """How far a linear picture (H, W, 3) has gone from `before` to `after`, halves of the truth, as above."""
+    if not where.any():
+        return Share()
     part = whole = 0.0
-    scale = (before[0] + before[1] + after[0] + after[1])[where] / 2
-    weight = np.divide(1.0, scale**2, out=np.zeros(scale.shape), where=scale > 0)
+    light = (before[0] + before[1] + after[0] + after[1])[where] / 2
+    weight = 1 / (light + light.mean()) ** 2
     for one, other in ((0, 1), (1, 0)):
         change, start = (after[one] - before[one])[where], before[other][where]
         part += float((weight * (picture[where] - start) * change).sum())
