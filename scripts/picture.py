@@ -1,4 +1,6 @@
-"""Writes docs/demo.png, the README's picture, from what `svgf-cl demo` left in out/demo: left noisy, right denoised."""
+"""Writes docs/demo.png, the README's picture, from what `svgf-cl demo` left in out/demo: noisy, SVGF as in its paper, and
+the default filter, each with temporal antialiasing.
+"""
 
 from __future__ import annotations
 
@@ -7,25 +9,40 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from svgf_cl import Denoiser, Settings
 from svgf_cl.io.atomic import written_whole
-from svgf_cl.io.display import to_bytes
-from svgf_cl.io.frames import frame_path
+from svgf_cl.io.display import Bytes, Linear, to_bytes
+from svgf_cl.io.frames import frame_path, read_frame
 from svgf_cl.io.pictures import read_picture
 
 DEMO = Path("out/demo")
 TARGET = Path("docs/demo.png")
 FRAME = 20
-NOISY_SHARE = 0.42
+PAPER = Settings(taps="5x5", taa=True)
 
 
 def main() -> None:
     """Compose and write the picture, the noise in 16 steps a channel: it does not compress otherwise."""
-    noisy, denoised = (to_bytes(read_picture(frame_path(DEMO / kind, FRAME))) for kind in ("noisy", "denoised"))
-    seam = round(NOISY_SHARE * noisy.shape[1])
-    picture = np.hstack([noisy[:, :seam] // 17 * 17, np.full_like(noisy[:, :2], 255), denoised[:, seam + 2 :]])
+    noisy, denoised = (read_picture(frame_path(DEMO / kind, FRAME)) for kind in ("noisy", "denoised"))
+    width = noisy.shape[1]
+    stripes = [to_bytes(noisy) // 17 * 17, to_bytes(as_in_the_paper()), to_bytes(denoised)]
+    edges = [round(share * width) for share in (0, 0.28, 0.64, 1)]
+    picture = np.hstack([line_before(s[:, a:b]) for s, a, b in zip(stripes, edges, edges[1:], strict=False)])
     with written_whole(TARGET) as aside:
-        Image.fromarray(picture).save(aside, format="PNG", optimize=True)
+        Image.fromarray(picture[:, 2:]).save(aside, format="PNG", optimize=True)
     print(f"{TARGET}: {TARGET.stat().st_size / 1000:.0f} kB")
+
+
+def as_in_the_paper() -> Linear:
+    """The demo's frame as SVGF makes it."""
+    paths = [frame_path(DEMO / "noisy", number) for number in range(FRAME + 1)]
+    with Denoiser(read_picture(paths[0]).shape[:2], settings=PAPER) as denoiser:
+        return [denoiser.denoise(read_frame(path)) for path in paths][-1]
+
+
+def line_before(stripe: Bytes) -> Bytes:
+    """A white line of two pixels in front of a part of the picture."""
+    return np.hstack([np.full_like(stripe[:, :2], 255), stripe])
 
 
 if __name__ == "__main__":

@@ -35,7 +35,7 @@ def bench(
 
     Runs on every device that works, or on the one that PYOPENCL_CTX names. Input is the camera moving in a built-in
     room, with albedo and ids. Event time is the device's clock, host time the caller's. Names are such as
-    svgf.atrous.3.1280x720 and svgf.frame.1280x720. How to read it all: docs/benchmarks.md.
+    kalman.atrous.3.1280x720 and kalman.frame.1280x720. How to read it all: docs/benchmarks.md.
 
     \b
     Examples:

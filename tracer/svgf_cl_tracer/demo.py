@@ -4,8 +4,8 @@ Every step leaves its result in files and the next one reads them there; what a 
 where it is what this one would write::
 
     noisy/frame.0000.exr ...        what the tracer rendered, with its G-buffer
-    filtered/frame.0000.exr ...     SVGF alone
-    denoised/frame.0000.exr ...     after temporal antialiasing too, as in the paper
+    filtered/frame.0000.exr ...     the filter alone
+    denoised/frame.0000.exr ...     after temporal antialiasing too
     reference/reference.0000.exr    of the compared frames only: they cost the most
     still.0000.png                  the compared frames side by side, with the piece that differs most
     preview.webp                    noisy and denoised, animated
@@ -23,7 +23,7 @@ import numpy as np
 import svgf_cl_tracer
 from svgf_cl.compare.metrics import Metrics, measure
 from svgf_cl.denoiser import Denoiser
-from svgf_cl.filters import Settings
+from svgf_cl.filters import DEFAULT
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.atomic import output_folder
 from svgf_cl.io.display import Bytes, to_bytes, write_image
@@ -36,7 +36,7 @@ from svgf_cl_tracer.references import CHUNK, chunks
 # From here on the history is long enough for the filter to be judged by.
 WARM = 8
 # Rays go through another point of the pixel in every frame; antialiasing makes smooth edges of that.
-SETTINGS = Settings(taa=True)
+SETTINGS = DEFAULT(taa=True)
 
 
 @dataclass(frozen=True)

@@ -68,7 +68,16 @@ def show_gain(noisy: Mapping[int, Metrics], svgf: Mapping[int, Metrics], antiali
         psnr = [f"{stage.psnr:.2f}" for stage in stages]
         ssim = [f"{stage.ssim:.3f}" for stage in stages]
         rows.append((str(number), *psnr, f"{stages[-1].psnr - before.psnr:+.2f}", *ssim))
-    columns = ("\nframe", "noisy\ndB", "SVGF\ndB", "+TAA\ndB", "gain\ndB", "noisy\nSSIM", "SVGF\nSSIM", "+TAA\nSSIM")
+    columns = (
+        "\nframe",
+        "noisy\ndB",
+        "filter\ndB",
+        "+TAA\ndB",
+        "gain\ndB",
+        "noisy\nSSIM",
+        "filter\nSSIM",
+        "+TAA\nSSIM",
+    )
     show("against the reference", columns, rows)
 
 
