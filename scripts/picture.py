@@ -37,7 +37,8 @@ def as_in_the_paper() -> Linear:
     """The demo's frame as SVGF makes it."""
     paths = [frame_path(DEMO / "noisy", number) for number in range(FRAME + 1)]
     with Denoiser(read_picture(paths[0]).shape[:2], settings=PAPER) as denoiser:
-        return [denoiser.denoise(read_frame(path)) for path in paths][-1]
+        pictures = [np.asarray(denoiser.denoise(read_frame(path))) for path in paths]
+    return pictures[-1]
 
 
 def line_before(stripe: Bytes) -> Bytes:
