@@ -1,5 +1,6 @@
-"""Writes docs/demo.png, the README's picture, from what `svgf-cl demo` left in out/demo: noisy, SVGF as in its paper, and
-the default filter, each with temporal antialiasing.
+"""Writes docs/demo.png, the README's picture, from what `svgf-cl demo` left in out/demo.
+
+Left noisy, in the middle SVGF as in its paper, right the default filter, the last two with temporal antialiasing.
 """
 
 from __future__ import annotations
