@@ -1,0 +1,89 @@
+"""How often a picture lies within the standard error that the filter says it has: once, and twice.
+
+The frames are those of `python -m benchmarks.quality` with rays through pixel centres. For every pixel that shows
+something, the error of the picture's luminance is divided by the square root of two variances: that of the stage
+`standard_error`, and the truth's own. The latter is a quarter of the squared difference of its two halves, averaged
+over 7x7 pixels. Were errors normally distributed, 68 % would lie within 1 and 95 % within 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Annotated
+
+import numpy as np
+import typer
+
+from benchmarks.command import run
+from benchmarks.footage import Footage
+from benchmarks.presentation import markdown
+from benchmarks.provenance import provenance
+from benchmarks.quality import footage
+from svgf_cl import Denoiser, Kalman
+from svgf_cl.bench.tables import Table
+from svgf_cl.cli.console import progress_bar, show
+from svgf_cl.device import devices
+from svgf_cl.oracle.taps import Array, luminance, shifted, square
+from svgf_cl_tracer import BUILTIN
+
+COLUMNS = ("scene", "within 1 %", "within 2 %", "of 68 and 95")
+
+
+def standard_error(
+    scene: Annotated[
+        list[str], typer.Argument(metavar="[SCENE]...", help="Built-in scenes, folders with a scene.json, scene files.")
+    ] = list(BUILTIN),  # noqa: B006  # never changed; typer wants the default spelled here
+    size: Annotated[str, typer.Option(metavar="WxH", help="Size of the frames.")] = "256x144",
+    frames: Annotated[int | None, typer.Option(metavar="N", min=2, help="Frames.")] = None,
+    spp: Annotated[int, typer.Option(metavar="N", min=2, help="Samples per pixel of the truth.")] = 256,
+    markdown_: Annotated[bool, typer.Option("--markdown", help="Print the table as markdown.")] = False,
+) -> None:
+    """Hold the standard error that the Kalman filter gives out against path-traced truth.
+
+    PYOPENCL_CTX chooses the device. The truth takes minutes a scene to render, and is kept in the user's cache folder.
+    """
+    rows = []
+    for each in [footage(name, size, frames, spp, jitter=False) for name in scene]:
+        with progress_bar(each.scene, each.chunks + each.frames) as advance:
+            ratios = in_standard_errors(each, advance)
+        shares = [100 * float(np.mean(ratios < count)) for count in (1, 2)]
+        off = ", ".join(f"{share - normal:+.0f}" for share, normal in zip(shares, (68, 95), strict=True))
+        rows.append([each.scene, *(f"{share:.0f}" for share in shares), off])
+    table = Table("errors within the standard error", COLUMNS, rows)
+    print(markdown(table)) if markdown_ else show(table.title, table.columns, table.rows)
+    about = provenance(devices.default_device()) | {"size": size, "truth": f"{spp} spp"}
+    print("\n".join(f"{key}: {value}" for key, value in about.items()))
+
+
+def in_standard_errors(footage: Footage, advance: Callable[[], None]) -> Array:
+    """The errors of all pixels of the judged frames that show something, each over its standard deviation: (N,)."""
+    halves = dict(zip(footage.judged, footage.halves(advance), strict=True))
+    found = []
+    with Denoiser(footage.shape, settings=Kalman(standard_error=True)) as denoiser:
+        for number, frame in enumerate(footage.noisy()):
+            picture = denoiser.denoise(replace(frame, direct=None, indirect=None))
+            if number in halves:
+                first, second = (luminance(half.astype(np.float64)) for half in halves[number])
+                error = luminance(picture.astype(np.float64)) - (first + second) / 2
+                variance = denoiser.stage("standard_error").astype(np.float64) ** 2 + smooth((first - second) ** 2 / 4)
+                hit = np.isfinite(frame.depth) & (variance > 0)
+                found.append(np.abs(error[hit]) / np.sqrt(variance[hit]))
+            advance()
+    return np.concatenate(found)
+
+
+def smooth(values: Array) -> Array:
+    """Mean over the 7x7 pixels around each; (H, W)."""
+    taps = [shifted(offset, (values.shape[0], values.shape[1])) for offset in square(3)]
+    total: Array = np.mean([values[y, x] for y, x, _ in taps], axis=0)
+    return total
+
+
+def main() -> None:
+    """Run the command."""
+    run(standard_error, "benchmarks.standard_error")
+
+
+if __name__ == "__main__":
+    main()
