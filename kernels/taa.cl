@@ -66,6 +66,16 @@ INLINE Position foremost(const int4 size, int x, int y, __global const float *de
     return p;
 }
 
+// The share of the newest frame in the history at these places: 1 / N, or 0 where nothing was hit.
+INLINE floatv newest_share(const int4 size, intv places, __global const light_t *moments) {
+#ifdef MOMENTS_LENGTH
+    const floatv frames = gather_light(SHARED_PLANE(size, moments, MOMENTS_LENGTH), places);
+    return where(frames > 0.0f, 1.0f / frames, (floatv)(0.0f));
+#else
+    return min(gather_light(PLANE(size, moments, ILLUMINATION_INVERSE_COUNT, 0, 0), places), (floatv)(1.0f));
+#endif
+}
+
 KERNEL taa(const int4 size, const float alpha_taa, __global const float *restrict motion,
            __global const float *restrict guide, __global const light_t *restrict moments,
            __global const float *restrict picture, __global const float *restrict history,
@@ -76,8 +86,7 @@ KERNEL taa(const int4 size, const float alpha_taa, __global const float *restric
     const Position front = foremost(size, x, y, SHARED_PLANE(size, guide, GUIDE_DEPTH));
     const intv m = (front.column + front.row * size.x) * MOTION;
     const floatv mx = gather(motion, m), my = gather(motion, m + 1);
-    const intv place = at_lanes(size, front.column, front.row);
-    const floatv frames = gather_light(SHARED_PLANE(size, moments, MOMENTS_LENGTH), place);
+    const floatv newest = newest_share(size, at_lanes(size, front.column, front.row), moments);
     const floatv px = to_float(x + LANES) + mx, py = to_float((intv)(y)) + my;
     const float right = (float)size.x - HALF_PIXEL, bottom = (float)size.y - HALF_PIXEL;
     const intv seen = (px >= -HALF_PIXEL) & (px < right) & (py >= -HALF_PIXEL) & (py < bottom);  // false for NaN
@@ -114,7 +123,7 @@ KERNEL taa(const int4 size, const float alpha_taa, __global const float *restric
     }
 
     // Before the first frame the history is NaN.
-    const floatv share = max((floatv)(alpha_taa), where(frames > 0.0f, 1.0f / frames, (floatv)(0.0f)));
+    const floatv share = max((floatv)(alpha_taa), newest);
     const floatv alpha = where(seen & isfinite(h.channel[0]), share, (floatv)(1.0f));
     Tone t;
     UNROLLED_FOR(k, 3) {

@@ -33,9 +33,14 @@ HEADERS = (
     "albedo.clh",
     "interleaved.clh",
     "surface.clh",
-    "reprojection.clh",
-    "significance.clh",
 )
+# What only some sources need: another would be compiled again for macros that it has no use for.
+MORE_HEADERS: Mapping[str, tuple[str, ...]] = {
+    "temporal": ("reprojection.clh",),
+    "predict": ("reprojection.clh",),
+    "change": ("significance.clh",),
+    "update": ("significance.clh",),
+}
 
 # No fast-math: it would allow the compiler to drop the guards against NaN and infinity. Weights too small to count are
 # denormal numbers, and slow: without them an a-trous level takes a seventh less time on traced frames.
@@ -68,9 +73,9 @@ def names() -> list[str]:
 
 @functools.cache
 def source(name: str) -> str:
-    """Return what is compiled for a source file: the shared headers, then the file itself."""
+    """Return what is compiled for a source file: the headers, then the file itself."""
     kernels = resources.files("svgf_cl.kernels")
-    files = (*HEADERS, f"{name}.cl")
+    files = (*HEADERS, *MORE_HEADERS.get(name, ()), f"{name}.cl")
     return "\n".join(f'#line 1 "{file}"\n{(kernels / file).read_text(encoding="utf-8")}' for file in files)
 
 

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from svgf_cl.filters import operations
 from svgf_cl.filters.operations import DISTANCE, EXP, LightOperations
-from svgf_cl.filters.pipeline import Life, Number, Pass, Pipeline, Quantity, Resource, access, user
+from svgf_cl.filters.pipeline import Access, Life, Number, Pass, Pipeline, Quantity, Resource, access, user
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.filters.taps import BLOCK, CROSS, HERE, footprint, grid
 from svgf_cl.filters.wavelet import WaveletFilter
@@ -256,6 +256,10 @@ class Kalman(WaveletFilter):
             writes=(access(Resource("confidence", "confidence", (error,))),),
             operations=operations.standard_error(inputs),
         )
+
+    def age(self, inputs: Inputs) -> Access:
+        """What antialiasing wants to know of the past: one over the number of samples that the history stands for."""
+        return access(self.state(inputs), "moments", {"inverse_count": HERE})
 
     def state(self, inputs: Inputs) -> Resource:
         """What is known of the light: its mean, the mean's variance, and what the next frame needs to go on."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from svgf_cl.filters import operations
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.formats import Format
-from svgf_cl.filters.pipeline import OUT, Life, Pass, Quantity, Resource, access, user
+from svgf_cl.filters.pipeline import OUT, Access, Life, Pass, Quantity, Resource, access, user
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.filters.taps import CROSS, HERE, footprint, grid
 from svgf_cl.settings import number, switch
@@ -174,6 +174,10 @@ class TemporalFilter(Filter):
         )
         return (modulate, self.taa_pass(inputs, picture)) if self.taa else (modulate,)
 
+    def age(self, inputs: Inputs) -> Access:
+        """What antialiasing wants to know of the past: how long the history is."""
+        return access(self.moments(inputs), taps={"length": HERE})
+
     def taa_pass(self, inputs: Inputs, picture: Resource) -> Pass:
         """Temporal antialiasing; NaN in its history is no colour."""
         color = Quantity("color", 3, stage="antialiased", unknown=math.nan)
@@ -185,7 +189,7 @@ class TemporalFilter(Filter):
             reads=(
                 user("motion", channels=2),
                 access(self.guide(inputs), taps={"depth": grid(1)}),
-                access(self.moments(inputs), taps={"length": HERE}),
+                self.age(inputs),
                 access(picture, "picture", {"color": grid(1)}),
                 access(antialiased, "history", {"color": footprint(4)}, previous=True),
             ),
