@@ -13,7 +13,7 @@ import numpy as np
 
 from benchmarks.surfaces import one_surface, reflecting, relit, still, without_albedo
 from svgf_cl.compare.halves import Mask, Pair, brightness, squared_change, squared_error
-from svgf_cl.compare.kept import Plane, contrast, sharpness
+from svgf_cl.compare.kept import RADIUS, Plane, contrast, sharpness
 from svgf_cl.compare.lag import lag, response, steps
 from svgf_cl.compare.metrics import decibels, flip, relmse, ssim
 from svgf_cl.compare.share import Share
@@ -77,8 +77,13 @@ class View:
 
     @cached_property
     def lit(self) -> Mask:
-        """Around which pixels light on one surface is all that there is: also on textures, where albedo is exact."""
-        return self.reflecting & (self.plain if self.jitter else one_surface(self.frame, one_colour=False))
+        """Around which pixels a window shows one surface, and no lamp: contrast there is that of light.
+
+        Where pixels of the truth are means, it shows one colour, too, as do the pixels around it: one ray does not tell
+        what else there is in its pixel.
+        """
+        window = RADIUS + 1 if self.jitter else RADIUS
+        return self.reflecting & one_surface(self.frame, window, one_colour=self.jitter)
 
     @cached_property
     def reflecting(self) -> Mask:

@@ -20,8 +20,8 @@ from svgf_cl.io.atomic import written_whole
 RAYS = {False: "rays through pixel centres", True: "jittered rays"}
 
 COLUMNS = (
-    *("PSNR dB ↑", "SSIM ↑", "FLIP ↓", "relMSE ↓", "temporal ↓", "surfaces ↓", "bias %"),
-    *("edges %", "shadows %", "moving %", "lag", "call ms", "device ms"),
+    *("PSNR ↑", "SSIM ↑", "FLIP ↓", "relMSE ↓", "temporal ↓", "surfaces ↓", "bias %"),
+    *("edges %", "shadows %", "moving %", "lag", "ms", "device ms"),
 )
 
 

@@ -14,15 +14,18 @@ from svgf_cl.oracle.taps import luminance, shifted, square
 
 SAME_NORMAL = 0.9  # cosine from which two pixels show one surface
 SAME_ALBEDO = 0.02
-STILL = 0.5  # pixels of motion
+STILL = 0.1  # pixels of motion; with more, a shadow's edge that rests changes light at its pixels, too
 CHANGED = 0.1  # of the light in a window
 
 
-def one_surface(frame: Frame, *, one_colour: bool = True) -> Mask:
-    """Where a pixel and all 24 around it show the same object, turned the same way, (H, W); and of the same colour."""
+def one_surface(frame: Frame, radius: int = RADIUS, *, one_colour: bool = True) -> Mask:
+    """Where a pixel and all within `radius` show the same object, turned the same way, of the same colour, (H, W).
+
+    With `one_colour` false, of any colours.
+    """
     hit: Mask = frame.depth < np.inf
     same: Mask = hit.copy()
-    for offset in square(RADIUS):
+    for offset in square(radius):
         y, x, inside = shifted(offset, frame.shape)
         same &= inside & hit[y, x] & (frame.id[y, x] == frame.id)
         same &= (frame.normal[y, x] * frame.normal).sum(axis=-1) > SAME_NORMAL

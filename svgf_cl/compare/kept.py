@@ -13,9 +13,9 @@ contrast   luminance of light     ``sum(cov(a / m, h1 / m1)) / sum(cov(h2 / m2, 
 =========  =====================  =====================================================================================
 
 Sums are over the `SHARE` of the pixels or windows where h1 has most. The halves h1 and h2 of the truth are independent,
-as in `svgf_cl.compare.halves`. h1 chooses; its noise is in both sums alike, and that of h2 and of the
-picture has no direction in common with it. So noise of neither truth nor picture counts as contrast: h1 is what
-statistics calls an instrumental variable. Then the halves change places, and all is added up.
+as in `svgf_cl.compare.halves`. h1 chooses; its noise is in both sums alike, and that of h2 and of the picture has no
+direction in common with it. So noise of neither truth nor picture counts as contrast: h1 is what statistics calls an
+instrumental variable. Then the halves change places, and all is added up.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ from svgf_cl.io.display import Linear
 
 SHARE = 0.05
 RADIUS = 2  # of a window, in pixels
+FAINT = 0.1  # standard deviation of light in a window over its mean
 
 Plane = NDArray[np.float64]
 Product = Callable[[NDArray[np.floating], NDArray[np.floating]], Plane]
@@ -47,17 +48,22 @@ def contrast(light: Plane, halves: tuple[Plane, Plane], where: Mask) -> Share:
     """How much contrast light (H, W) keeps in the windows around the pixels `where` (H, W).
 
     `where` has to be such that each window shows one surface: other edges than those of light are not what is meant.
+    Nothing of nothing where the truth has no contrast beyond `FAINT`, and a slope would be that of noise.
     """
-    return slope(relative_covariance, light, halves, where)
+    return slope(relative_covariance, light, halves, where, FAINT**2)
 
 
-def slope(product: Product, picture: Linear, halves: Pair, where: Mask) -> Share:
-    """Slope of picture on truth, by a product (H, W) of two images, where its square is largest in the truth."""
+def slope(product: Product, picture: Linear, halves: Pair, where: Mask, least: float = 0.0) -> Share:
+    """Slope of picture on truth, by a product (H, W) of two images, where its square is largest in the truth.
+
+    If the truth's own product is not above `least` there, on average, it is that of nothing.
+    """
     total = Share()
     for chooser, other in (halves, halves[::-1]):
         strongest = largest(product(chooser, chooser), where)
-        part, whole = (product(image, chooser)[strongest] for image in (picture, other))
-        total += Share(float(part.sum()), float(whole.sum()))
+        part, whole = (float(product(image, chooser)[strongest].sum()) for image in (picture, other))
+        if whole > least * np.count_nonzero(strongest):
+            total += Share(part, whole)
     return total
 
 

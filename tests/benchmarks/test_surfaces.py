@@ -35,6 +35,7 @@ def test_one_surface_is_where_its_window_shows_nothing_else() -> None:
     inside = surfaces.one_surface(Frame(**PLAIN))
     assert inside[2:-2, 2:-2].all()
     assert inside.sum() == 5 * 8
+    assert surfaces.one_surface(Frame(**PLAIN), 3).sum() == 3 * 6
 
 
 @pytest.mark.parametrize(
@@ -72,6 +73,6 @@ def test_light_changes_on_what_stays_and_not_by_noise() -> None:
     assert found[4, 8]
     assert not found[4, 2:4].any()
     assert not surfaces.relit(halves(1.0), halves(1.0), here).any()
-    for later in (changed("motion", 1.0, RIGHT), changed("id", 2, RIGHT)):
+    for later in (changed("motion", 0.3, RIGHT), changed("id", 2, RIGHT)):
         moved = surfaces.still(Frame(**PLAIN), later)
         assert not surfaces.relit(halves(1.0), halves(darker), moved)[:, 4:].any()
