@@ -97,13 +97,13 @@ def describe(domain: Domain) -> str:
 
 
 def settings_help() -> str:
-    """Describe every setting with its range and default, for the help text: first those that all filters have."""
-    kinds = list(FILTERS.values())
-    shared = [name for name in domains(kinds[0]) if all(name in domains(kind) for kind in kinds)]
-    parts = ["All filters have " + "; ".join(described(kinds[0], name) for name in shared)]
-    for filter_, kind in FILTERS.items():
-        own = [described(kind, name) for name in domains(kind) if name not in shared]
-        parts.append(f"{filter_} also has " + "; ".join(own))
+    """Describe every setting with its range and default, for the help text: first what is the same for all filters."""
+    known = {filter_: [described(kind, name) for name in domains(kind)] for filter_, kind in FILTERS.items()}
+    first, *others = known.values()
+    shared = [text for text in first if all(text in texts for texts in others)]
+    parts = ["All filters have " + "; ".join(shared)]
+    for filter_, texts in known.items():
+        parts.append(f"{filter_} also has " + "; ".join(text for text in texts if text not in shared))
     return f"Change a setting of the filter; may be repeated. {'. '.join(parts)}."
 
 

@@ -195,7 +195,7 @@ class TestUpdate:
         self, queue: cl.CommandQueue, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         frames = [on_device(frame, queue) for frame in bumpy_sequence(FULL, count=3)]
-        den, plain = Denoiser(SHAPE, queue=queue), Denoiser(SHAPE, queue=queue)
+        den, plain = (Denoiser(SHAPE, settings=Settings(), queue=queue) for _ in range(2))
         for frame in frames[:2]:
             out, _ = den.denoise(frame), plain.denoise(frame)
         with monkeypatch.context() as patch:
@@ -214,7 +214,7 @@ class TestUpdate:
     )
     def test_other_passes_or_kernels_keep_the_past(self, chosen: Settings) -> None:
         *before, after = bumpy_sequence(FULL, count=3)
-        den, plain = Denoiser(SHAPE), Denoiser(SHAPE)
+        den, plain = Denoiser(SHAPE, settings=Settings()), Denoiser(SHAPE, settings=Settings())
         for frame in before:
             den.denoise(frame)
             plain.denoise(frame)
@@ -254,7 +254,9 @@ class TestUpdate:
         assert "level_2" not in den.stages
 
     def test_takes_settings_alone(self) -> None:
-        with pytest.raises(SvgfError, match=r"expected settings=Settings\(\.\.\.\) or Eaw\(\.\.\.\), got None"):
+        with pytest.raises(
+            SvgfError, match=r"expected settings=Kalman\(\.\.\.\) or Settings\(\.\.\.\) or Eaw\(\.\.\.\), got None"
+        ):
             Denoiser(TINY).update(None)  # type: ignore[arg-type]
 
 
@@ -399,7 +401,7 @@ class TestStages:
                 assert shape == (signals, *SHAPE, 3)
 
     def test_overwritten_one_tells_of_keep_stages(self) -> None:
-        den = Denoiser(TINY)
+        den = Denoiser(TINY, settings=Settings())
         den.denoise(wall(TINY))
         with pytest.raises(SvgfError, match=r"'demodulated' was overwritten .*keep_stages=True"):
             den.stage("demodulated")
@@ -407,7 +409,7 @@ class TestStages:
     def test_those_that_survive_are_the_same_as_kept_ones(self) -> None:
         frames = bumpy_sequence(SPLIT, count=2)
         _, kept = feed(*frames)
-        den = Denoiser(SHAPE)
+        den = Denoiser(SHAPE, settings=Settings())
         for frame in frames:
             den.denoise(frame)
         for name in ("normal", "depth", "history_length", "mean", "moment_variance", "level_1", "level_5"):
@@ -437,13 +439,13 @@ class TestMemory:
         assert den.nbytes > 0
 
     def test_copies_of_stages_count(self) -> None:
-        den = Denoiser(TINY)
+        den = Denoiser(TINY, settings=Settings())
         den.denoise(wall(TINY))
         assert den.nbytes < feed(wall(TINY))[1].nbytes
 
     def test_is_that_of_22_planes(self) -> None:
         """Two guides of 4, moments of 3, and 4 each of history and of what is filtered."""
-        den = Denoiser((90, 160))
+        den = Denoiser((90, 160), settings=Settings())
         den.denoise(wall((90, 160)))
         assert den.nbytes == 22 * 4 * Layout(90, 160, den.tuning.row_alignment).plane
 

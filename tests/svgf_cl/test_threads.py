@@ -57,7 +57,7 @@ def test_one_denoiser_in_threads_takes_whole_frames_in_turn(queue: cl.CommandQue
 
 
 def test_one_denoiser_may_be_asked_and_reset_by_threads(queue: cl.CommandQueue) -> None:
-    den = Denoiser(SHAPE, queue=queue)
+    den = Denoiser(SHAPE, settings=Settings(), queue=queue)
 
     def work() -> bool:
         finite = True

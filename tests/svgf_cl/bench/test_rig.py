@@ -48,7 +48,7 @@ def test_a_variant_is_timed_as_a_whole(queue: cl.CommandQueue) -> None:
 
 def test_the_camera_goes_to_and_fro_with_history(queue: cl.CommandQueue) -> None:
     """Sent in turn, each frame finds its surfaces in the other: history grows nearly everywhere."""
-    den = Denoiser((45, 80), queue=queue, keep_stages=True)
+    den = Denoiser((45, 80), settings=Settings(), queue=queue, keep_stages=True)
     frames = there_and_back((45, 80), 1)
     for index in range(6):
         den.denoise(frames[index % 2])

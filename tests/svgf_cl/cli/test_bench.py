@@ -26,7 +26,7 @@ def test_bench_writes_a_report_and_compares(tmp_path: Path, capsys: pytest.Captu
     assert run(*argv) == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["report.html", "results.json", "summary.png"]
     shown = capsys.readouterr().out
-    assert "svgf.frame.16x9" in shown
+    assert "kalman.frame.16x9" in shown
     assert "2.0e-07" in shown, "speed stands beside error"
     assert run(*argv, "--compare", tmp_path / "results.json") == 0
     assert "times faster" in capsys.readouterr().out

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
-from svgf_cl import Eaw, Settings, SettingsError
+from svgf_cl import Eaw, Kalman, Settings, SettingsError
 from svgf_cl.cli.options import parse_settings, settings_help
 from svgf_cl.filters import FILTERS
 from svgf_cl.settings import domains
@@ -27,11 +29,17 @@ def test_help_lists_every_setting_of_every_filter() -> None:
 
 
 def test_help_tells_what_each_filter_has() -> None:
-    shared, _, own = settings_help().partition("svgf also has ")
-    assert "iterations: a whole number in 1..5 [5]" in shared
+    shared, *own = re.split(r"\w+ also has ", settings_help())
     assert "taa: on or off [off]" in shared
-    assert "sigma_luminance" in own.partition("eaw also has ")[0]
-    assert "sigma_color" in own.partition("eaw also has ")[2]
+    assert "iterations" not in shared, "its default differs"
+    assert [re.findall(r"iterations.*?\[\d\]", text) for text in own] == [
+        [f"iterations: a whole number in 1..5 [{kind().iterations}]"] for kind in (Kalman, Settings, Eaw)
+    ]
+    assert [("sigma_luminance" in text, "sigma_color" in text) for text in own] == [
+        (True, False),
+        (True, False),
+        (False, True),
+    ]
 
 
 @pytest.mark.parametrize(
