@@ -270,7 +270,7 @@ class Denoiser:
         Parameters
         ----------
         name : str
-            One of `stages`, such as "history_length", "variance" or "level_2".
+            One of `stages`, such as "inverse_count", "variance" or "level_2".
 
         Returns
         -------
