@@ -1,7 +1,8 @@
 // Has the light changed? A test of the new frame against the prediction, over neighbourhoods of growing size, at every
 // second pixel of every second row.
 //
-//   pass i = 1, 2, 3, 4 has 3x3 taps 2^(i-1) pixels apart, with weights w = h w_z w_n of geometry alone
+//   pass 1 has the 2x2 pixels to the right and below, pass i = 2, 3, 4 has 3x3 taps 2^(i-1) pixels apart;
+//   with weights w = h w_z w_n of geometry alone
 //     d, r, e, f := mean of d, r, e, f,   u := sum w^2 u / (sum w)^2
 //     from d = D, r = l(D)^2, e = E, f = E^2, u = 1 at all pixels
 //   from the widest pass down to i = 2, beginning with A = B = q = 0:

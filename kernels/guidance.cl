@@ -27,7 +27,9 @@ INLINE Moments neighbourhood(const int4 size, int here, Surface surface, const f
         for (int dx = -REACH; dx <= REACH; ++dx) {
             const int tap = here + dy * size.z + dx;
             floatv w = weight(surface_exponent(surface, depth_scale(surface.facet, dx, dy), 0.0f, size, tap, guide));
-            w = where(w > FAINTEST, w, (floatv)(0.0f));  // even so faint, the square of light of 1e10 would show
+            // Even so faint, the square of light of 1e10 would show; and a miss is told by its depth alone.
+            const intv seen = load(SHARED_PLANE(size, guide, GUIDE_DEPTH) + tap) > 0.0f;
+            w = where(seen & (w > FAINTEST), w, (floatv)(0.0f));
             sum.weight += w;
             UNROLLED_FOR(s, SIGNALS) {
                 const floatv l = load_light(PLANE(size, state, ILLUMINATION_COLOR, s, LIGHT_LUMINANCE) + tap);
@@ -63,9 +65,9 @@ KERNEL guidance(const int4 size, const float sigma_depth, const float sigma_norm
             const int tap = here + dy * size.z + dx;
             floatv normal[3];
             load_normals(size, tap, guide, normal);
-            const floatv scale = depth_scale(surface.facet, dx, dy);
-            floatv w =
-                GAUSS(dx) * GAUSS(dy) * weight(facet_exponent(surface.facet, scale, 0.0f, load(depth + tap), normal));
+            const floatv scale = depth_scale(surface.facet, dx, dy), z = load(depth + tap);
+            floatv w = GAUSS(dx) * GAUSS(dy) * weight(facet_exponent(surface.facet, scale, 0.0f, z, normal));
+            w = where(z > 0.0f, w, (floatv)(0.0f));
             if (dx == 0 && dy == 0) w = (floatv)(0.25f);
             total += w;
             UNROLLED_FOR(s, SIGNALS) {

@@ -68,6 +68,8 @@ INLINE Beside load_beside(__global const float *coarse, int x) {
 INLINE Corrections interpolated(const int4 coarse_size, int x, int y, Facet facet, __global const float *facets,
                                 __global const float *correction) {
     Corrections sum = no_corrections();
+    const floatv between = to_float((x + LANES) & 1);  // the pixels to the left and to the right, or the one here twice
+    const float log2_h = (y & 1) ? -2.0f : -1.0f;
     for (int j = 0; j <= (y & 1); ++j) {
         const int dy = (y & 1) ? 2 * j - 1 : 0;
         const int i = at(coarse_size, x / 2, (y + dy) / 2);
@@ -83,8 +85,10 @@ INLINE Corrections interpolated(const int4 coarse_size, int x, int y, Facet face
         UNROLLED_FOR(r, 2) {
             floatv there[3];
             UNROLLED_FOR(k, 3) there[k] = normal[k].side[r];
-            const floatv e = facet_exponent(facet, depth_scale(facet, 2 * r - 1, dy), 0.0f, depth.side[r], there);
-            const floatv w = where(depth.side[r] > 0.0f, weight(e), (floatv)(0.0f));
+            const floatv along = facet.along_x * between * (float)(2 * r - 1) + facet.along_y * (float)dy;
+            const floatv scale = -NEPER / (fabs(along) + facet.least);
+            floatv w = weight(facet_exponent(facet, scale, log2_h, depth.side[r], there));
+            w = where((depth.side[r] > 0.0f) & (w > FAINTEST), w, (floatv)(0.0f));
             sum.weight += w;
             UNROLLED_FOR(s, SIGNALS) {
                 UNROLLED_FOR(k, 3) sum.of[s].color[k] += w * color[s][k].side[r];

@@ -42,6 +42,10 @@ class Slot:
         in_place = self.last == first and self.buffers[-1].resource.name == buffer.resource.over
         return (self.last < first or in_place) and not self.planes.over(buffer.resource.planes).is_mixed
 
+    def holds(self, buffer: Buffer) -> bool:
+        """Whether there is room for a buffer already, at its pixels and its width."""
+        return self.spacing == buffer.resource.spacing and self.planes.over(buffer.resource.planes) == self.planes
+
     def growth(self, planes: Planes) -> int:
         """Bits of a pixel that making room for these planes takes; a pair's other half grows as well."""
         more = self.planes.over(planes).depth - self.planes.depth
@@ -68,7 +72,8 @@ def memory_slots(pipeline: Pipeline) -> list[Slot]:
     for first, entry in enumerate(pipeline.passes):
         for each in entry.writes:
             if isinstance(each.of, Buffer) and each.of not in placed:
-                if slot := under.get(each.of.resource.name):  # which has no use for its memory before
+                slot = under.get(each.of.resource.name)
+                if slot and slot.holds(each.of):  # it is of no use to the pair before
                     slot.buffers.insert(0, each.of)
                 else:
                     place(each.of, first, last_use[each.of], slots)

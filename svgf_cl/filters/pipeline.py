@@ -89,7 +89,8 @@ class Resource:
     quantities : tuple of Quantity
     life : Life
     over : str
-        Name of a buffer that it may be written over, as it is made of that one pixel by pixel.
+        Name of a buffer that it may be written over: the pass that begins to write this one reads that one at the pixel
+        itself alone, and no later pass reads it. A pair may be written over one that was made within the frame.
     spacing : int
         Pixels of the image from one of its own to the next, along a row and down; 2 holds every second one.
     """
@@ -311,6 +312,24 @@ class Pipeline:
         for names in ([entry.label for entry in self.passes], [name for name, _, _ in self.shown()]):
             if len(set(names)) < len(names):
                 raise ValueError(f"expected passes and stages of different names, got {', '.join(names)}")
+        for resource in self.resources:
+            self._check_over(resource)
+
+    def _check_over(self, resource: Resource) -> None:
+        """Raise `ValueError` if a buffer that this one may be written over is read beside the pixel, or later."""
+        begun = False
+        for entry in self.passes:
+            begins = not begun and any(each.of == Buffer(resource) for each in entry.writes)
+            for each in entry.reads:
+                if isinstance(each.of, Buffer) and each.of.resource.name == resource.over:
+                    if begun:
+                        raise ValueError(f"{entry.label}: expected no read of {each.of} once {resource.name} is over it")
+                    if begins and any(use.taps != HERE for use in each.uses):
+                        raise ValueError(
+                            f"{entry.label}: expected a read of {each.of} at the pixel itself alone, as {resource.name} "
+                            "may be written over it"
+                        )
+            begun = begun or begins
 
     @cached_property
     def resources(self) -> tuple[Resource, ...]:
