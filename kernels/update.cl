@@ -87,8 +87,8 @@ INLINE Corrections interpolated(const int4 coarse_size, int x, int y, Facet face
             UNROLLED_FOR(k, 3) there[k] = normal[k].side[r];
             const floatv along = facet.along_x * between * (float)(2 * r - 1) + facet.along_y * (float)dy;
             const floatv scale = -NEPER / (fabs(along) + facet.least);
-            floatv w = weight(facet_exponent(facet, scale, log2_h, depth.side[r], there));
-            w = where((depth.side[r] > 0.0f) & (w > FAINTEST), w, (floatv)(0.0f));
+            const floatv e = facet_exponent(facet, scale, log2_h, depth.side[r], there);
+            const floatv w = where(depth.side[r] > 0.0f, weight(e), (floatv)(0.0f));
             sum.weight += w;
             UNROLLED_FOR(s, SIGNALS) {
                 UNROLLED_FOR(k, 3) sum.of[s].color[k] += w * color[s][k].side[r];

@@ -323,7 +323,9 @@ class Pipeline:
             for each in entry.reads:
                 if isinstance(each.of, Buffer) and each.of.resource.name == resource.over:
                     if begun:
-                        raise ValueError(f"{entry.label}: expected no read of {each.of} once {resource.name} is over it")
+                        raise ValueError(
+                            f"{entry.label}: expected no read of {each.of} once {resource.name} is over it"
+                        )
                     if begins and any(use.taps != HERE for use in each.uses):
                         raise ValueError(
                             f"{entry.label}: expected a read of {each.of} at the pixel itself alone, as {resource.name} "

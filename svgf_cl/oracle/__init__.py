@@ -7,10 +7,10 @@ from typing import Any
 
 from svgf_cl.filters.filter import Filter
 from svgf_cl.frame import Shape
-from svgf_cl.oracle.temporal import TemporalOracle
+from svgf_cl.oracle.temporal import FilterOracle
 
 
-def oracle_of(settings: Filter, shape: Shape) -> TemporalOracle[Any]:
+def oracle_of(settings: Filter, shape: Shape) -> FilterOracle[Any]:
     """The oracle of a filter with these settings, for frames of this (height, width)."""
-    oracle: TemporalOracle[Any] = import_module(f"svgf_cl.oracle.{settings.name}").Oracle(shape, settings)
+    oracle: FilterOracle[Any] = import_module(f"svgf_cl.oracle.{settings.name}").Oracle(shape, settings)
     return oracle

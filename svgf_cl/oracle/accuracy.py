@@ -13,6 +13,7 @@ from svgf_cl.compare.rounding import counted_against, largest_channel
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.filters import Settings
 from svgf_cl.filters.filter import Filter
+from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Frame
 from svgf_cl.oracle import oracle_of
 from svgf_cl.oracle.taps import Array
@@ -84,10 +85,11 @@ def deviations(
         den = den or Denoiser(frame.shape, settings=settings, queue=queue, keep_stages=True)
         out = den.denoise(frame)
         now = {name: wide(values) for name, values in stages_of(den).items()} | {"out": wide(out)}
+        shown = settings.pipeline(Inputs.of(frame)).shown()
+        colours = {"out"} | {name for name, _, quantity in shown if quantity.channels == 3}
         for kernel, made in oracle_of(settings, frame.shape).kernels(frame, now, past):
             for stage, expected in made.items():
-                colour = expected.shape[-3:] == (*frame.shape, 3)
-                size = counted_against(largest_channel(expected) if colour else np.abs(expected))
+                size = counted_against(largest_channel(expected) if stage in colours else np.abs(expected))
                 error = np.abs(now[stage] - expected)
                 found.setdefault(stage, []).append(Deviation.of(kernel, error, np.broadcast_to(size, error.shape)))
         past = Past(seen_guides(frame, now), now)

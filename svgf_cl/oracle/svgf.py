@@ -7,6 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from svgf_cl.filters.kalman import Kalman
 from svgf_cl.filters.svgf import Settings
 from svgf_cl.oracle.taps import Array, depth_gradient, luminance, shifted, smoothed, square
 from svgf_cl.oracle.temporal import Accumulated, Guides, Made, Stages, TemporalOracle, accumulated
@@ -32,7 +33,14 @@ def variance(past: Accumulated, guides: Guides, settings: Settings) -> Array:
     return np.where(guides.hit, np.where(length >= NEARLY_LONG, past.variance, spatial), 0)
 
 
-def atrous(illumination: Array, var: Array, guides: Guides, level: int, settings: Settings) -> tuple[Array, Array]:
+def atrous(
+    illumination: Array,
+    var: Array,
+    guides: Guides,
+    level: int,
+    settings: Settings | Kalman,
+    guidance: Array | None = None,
+) -> tuple[Array, Array]:
     """Section 4: one level of the edge-avoiding a-trous wavelet filter.
 
     Parameters
@@ -41,6 +49,9 @@ def atrous(illumination: Array, var: Array, guides: Guides, level: int, settings
     var : (S, H, W), variance of the illumination's luminance.
     guides : Guides
     level : int, i, from 1; the taps lie 2^(i-1) pixels apart.
+    settings : Settings or Kalman
+    guidance : (S, H, W), optional
+        Section 7: what light is compared by is half its luminance and half this.
 
     Returns
     -------
@@ -49,6 +60,8 @@ def atrous(illumination: Array, var: Array, guides: Guides, level: int, settings
     step = 2 ** (level - 1)
     gradient = depth_gradient(guides.depth)
     luma = luminance(illumination)
+    if guidance is not None:
+        luma = (luma + guidance) / 2
     relative, least = LUMINANCE_TOLERANCE
     tolerance = settings.sigma_luminance * np.sqrt(smoothed(var, guides.hit)) + relative * luma + least
     color, squares, total = np.zeros_like(illumination), np.zeros_like(var), np.zeros_like(var)

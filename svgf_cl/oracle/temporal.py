@@ -175,36 +175,62 @@ def consistent(x: Indices, y: Indices, guides: Guides, previous: Guides, setting
     return same
 
 
-def reproject(guides: Guides, history: History, settings: TemporalFilter) -> tuple[Accumulated, Mask]:
-    """Section 2: the history mean over the consistent taps, and where there is one, (H, W)."""
+@dataclass(frozen=True, eq=False)
+class Footprint:
+    """Which pixels of the previous frame show what a pixel shows now.
+
+    Parameters
+    ----------
+    rows, columns : (T, H, W), of T taps.
+    weight : (T, H, W), adds up to 1, or to 0 where nothing is found.
+    found : (H, W)
+    """
+
+    rows: Indices
+    columns: Indices
+    weight: Array
+    found: Mask
+
+    def taps(self, values: Array) -> Array:
+        """The previous frame's values, (S, H, W[, 3]), at the taps: (S, T, H, W[, 3])."""
+        return values[:, self.rows, self.columns]
+
+    def mean(self, taps: Array) -> Array:
+        """Over the taps, (S, T, H, W[, 3]): (S, H, W[, 3])."""
+        mean: Array = np.einsum("thw,sthw...->shw...", self.weight, taps)
+        return mean
+
+
+def footprint(guides: Guides, previous: Guides, settings: TemporalFilter) -> Footprint:
+    """Section 2: the consistent taps."""
     position = reprojected(guides.motion)
 
     # 13 candidates: the bilinear four, and the nearest nine that stand in where those four weigh too little.
     x, y, b = (np.concatenate(pair) for pair in zip(bilinear_taps(position), nearest_taps(position), strict=True))
-    b *= consistent(x, y, guides, history.guides, settings)
+    b *= consistent(x, y, guides, previous, settings)
     rows, columns, _ = locate(x, y, guides.depth.shape)
-    if guides.albedo is not None and history.guides.albedo is not None:
-        past_albedo = history.guides.albedo[rows, columns]
+    if guides.albedo is not None and previous.albedo is not None:
+        past_albedo = previous.albedo[rows, columns]
         b *= np.where(alike(guides.albedo, past_albedo, settings.albedo_threshold), 1, OTHERS_WEIGHT)
     enough = b[:4].sum(axis=0) > HISTORY_WEIGHT
     b[:4] *= enough
     b[4:] *= ~enough
     found = b.sum(axis=0) > 0
-    b /= np.where(found, b.sum(axis=0), 1)
+    return Footprint(rows, columns, b / np.where(found, b.sum(axis=0), 1), found)
 
-    def average(taps: Array) -> Array:
-        mean: Array = np.einsum("thw,sthw...->shw...", b, taps)
-        return mean
 
+def reproject(guides: Guides, history: History, settings: TemporalFilter) -> tuple[Accumulated, Mask]:
+    """Section 2: the history mean over the consistent taps, and where there is one, (H, W)."""
+    around = footprint(guides, history.guides, settings)
     past = history.accumulated
-    mean = average(past.mean[:, rows, columns])
-    deviation = past.mean[:, rows, columns] - mean[:, None]
+    mean = around.mean(around.taps(past.mean))
+    deviation = around.taps(past.mean) - mean[:, None]
     return Accumulated(
-        illumination=average(past.illumination[:, rows, columns]),
+        illumination=around.mean(around.taps(past.illumination)),
         mean=mean,
-        variance=average(past.variance[:, rows, columns] + deviation**2),
-        length=average(past.length[None, rows, columns])[0],
-    ), found
+        variance=around.mean(around.taps(past.variance) + deviation**2),
+        length=around.mean(around.taps(past.length[None]))[0],
+    ), around.found
 
 
 def temporal(
@@ -310,7 +336,7 @@ class Past:
     stages: Stages
 
 
-class TemporalOracle(ABC, Generic[Chosen]):
+class FilterOracle(ABC, Generic[Chosen]):
     """A whole filter over a sequence, as the `Denoiser` runs it on a device.
 
     Parameters
@@ -325,8 +351,6 @@ class TemporalOracle(ABC, Generic[Chosen]):
     stages : dict of str to array
         Every intermediate result of the last frame, named and shaped as by `Denoiser.stage`.
     """
-
-    history: ClassVar[str]  # the stage that is the next frame's colour history
 
     def __init__(self, shape: Shape, settings: Chosen) -> None:
         self.shape: Shape = shape
@@ -363,8 +387,30 @@ class TemporalOracle(ABC, Generic[Chosen]):
         yield "demodulate", {"normal": exact.normal, "depth": exact.depth, "demodulated": illumination}
 
         guides = seen_guides(frame, now)
+        filtered = yield from self.filtered(now, guides, past)
+        image = modulate(now[filtered], guides)
+        if not settings.taa:
+            yield "modulate", {"out": image}
+            return
+        yield "modulate", {"modulated": image}
+        before = past.stages["antialiased"] if past else None
+        resolved, tone = taa(now["modulated"], guides, now["history_length"], before, settings)
+        yield "taa", {"antialiased": tone, "out": resolved}
+
+    @abstractmethod
+    def filtered(self, now: Stages, guides: Guides, past: Past | None) -> Generator[Made, None, str]:
+        """What the kernels between demodulate and modulate make; returns the stage that the last of them made."""
+
+
+class TemporalOracle(FilterOracle[Chosen]):
+    """A filter whose accumulation over time is that of section 2."""
+
+    history: ClassVar[str]  # the stage that is the next frame's colour history
+
+    def filtered(self, now: Stages, guides: Guides, past: Past | None) -> Generator[Made, None, str]:
+        """Accumulation, then what is done over space."""
         history = History(past.guides, accumulated(past.stages, past.stages[self.history])) if past else None
-        made = temporal(now["demodulated"], guides, history, settings, self.alpha_moments)
+        made = temporal(now["demodulated"], guides, history, self.settings, self.alpha_moments)
         yield (
             "temporal",
             {
@@ -374,17 +420,7 @@ class TemporalOracle(ABC, Generic[Chosen]):
                 "moment_variance": made.variance,
             },
         )
-
-        filtered = yield from self.spatial(now, guides)
-
-        image = modulate(now[filtered], guides)
-        if not settings.taa:
-            yield "modulate", {"out": image}
-            return
-        yield "modulate", {"modulated": image}
-        before = past.stages["antialiased"] if past else None
-        resolved, tone = taa(now["modulated"], guides, now["history_length"], before, settings)
-        yield "taa", {"antialiased": tone, "out": resolved}
+        return (yield from self.spatial(now, guides))
 
     @property
     @abstractmethod

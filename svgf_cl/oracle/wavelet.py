@@ -2,28 +2,75 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from svgf_cl.filters.wavelet import WaveletFilter
 from svgf_cl.oracle.albedo import alike
-from svgf_cl.oracle.taps import Array, Offset, dot, shifted
+from svgf_cl.oracle.taps import Array, Mask, Offset, dot, shifted
 from svgf_cl.oracle.temporal import Guides
 
 # By radius: of B3, and linear.
 SPLINES = {2: {-2: 1 / 16, -1: 1 / 4, 0: 3 / 8, 1: 1 / 4, 2: 1 / 16}, 1: {-1: 1 / 4, 0: 1 / 2, 1: 1 / 4}}
 
 
+@dataclass(frozen=True, eq=False)
+class Facets:
+    """The surface at the pixels of a grid.
+
+    Parameters
+    ----------
+    depth : (H, W); 0 where nothing counts.
+    normal : (H, W, 3)
+    gradient : (H, W, 2), g.
+    spacing : int, pixels from one to the next.
+    """
+
+    depth: Array
+    normal: Array
+    gradient: Array
+    spacing: int = 1
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """How different neighbours may be on one surface: sigma_depth, sigma_normal and depth_slope_floor."""
+
+    depth: float
+    normal: float
+    slope_floor: float
+
+    @classmethod
+    def of(cls, settings: WaveletFilter) -> Tolerance:
+        """That of the a-trous levels."""
+        return cls(settings.sigma_depth, settings.sigma_normal, settings.depth_slope_floor)
+
+
 def surface_weight(guides: Guides, gradient: Array, offset: Offset, step: int, settings: WaveletFilter) -> Array:
     """Section 4: w_z w_n w_a for the tap q = p + step * offset, (H, W); 1 at the centre, 0 where p or q is a miss."""
-    dx, dy = offset
-    y, x, inside = shifted(offset, guides.depth.shape, step)
-    hits = inside & guides.hit & guides.hit[y, x]
-    if dx == dy == 0:
+    facets = Facets(guides.depth, guides.normal, gradient)
+    away = (step * offset[0], step * offset[1])
+    return facet_weight(facets, away, Tolerance.of(settings)) * same_albedo(guides, away, settings.albedo_threshold)
+
+
+def facet_weight(facets: Facets, offset: Offset, tolerance: Tolerance) -> Array:
+    """Section 4: w_z w_n for the tap `offset` places of the grid away, (H, W); 1 at the centre."""
+    y, x, inside = shifted(offset, facets.depth.shape)
+    hits = inside & (facets.depth > 0) & (facets.depth[y, x] > 0)
+    if not any(offset):
         return hits.astype(np.float64)
-    slope = settings.sigma_depth * np.abs(gradient @ np.array(offset))
-    slope += settings.depth_slope_floor * guides.depth * max(abs(dx), abs(dy))
-    w_z = np.exp(-np.abs(guides.depth - guides.depth[y, x]) / (step * np.where(hits, slope, 1)))
-    w_n = np.exp(settings.sigma_normal * (dot(guides.normal, guides.normal[y, x]) - 1))
-    if guides.albedo is not None:
-        hits &= alike(guides.albedo, guides.albedo[y, x], settings.albedo_threshold)
+    apart = facets.spacing * np.array(offset)
+    slope = tolerance.depth * np.abs(facets.gradient @ apart)
+    slope += tolerance.slope_floor * facets.depth * np.abs(apart).max()
+    w_z = np.exp(-np.abs(facets.depth - facets.depth[y, x]) / np.where(hits, slope, 1))
+    w_n = np.exp(tolerance.normal * (dot(facets.normal, facets.normal[y, x]) - 1))
     return np.where(hits, w_z * w_n, 0)
+
+
+def same_albedo(guides: Guides, offset: Offset, octaves: float) -> Mask:
+    """Section 4: w_a for the tap p + offset, (H, W); true at the centre."""
+    y, x, inside = shifted(offset, guides.depth.shape)
+    if guides.albedo is None or not any(offset):
+        return inside
+    return alike(guides.albedo, guides.albedo[y, x], octaves)
