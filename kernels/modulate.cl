@@ -1,20 +1,14 @@
 // First and last stage: the user's interleaved (H, W, C) arrays in and out of the planar layout.
 //
 //   demodulate   c = min(max((radiance - emission) / albedo', 0), MAX_LIGHT)
-//                albedo'_k = max(min(albedo_k, 1), 0.04 max over channels of albedo, 0.02)
 //   modulate     out = sum over signals c * albedo' + emission
-//   standard_error   3 sqrt(sum over signals Var) * l(albedo')
 //
 // in   radiance of each signal; albedo, emission, id where the frame has them; normal, depth
 // out  guide: normal, depth (both 0 on a miss), id, albedo (as a code);  illumination: c
 // A single signal holds the emission, of two neither does. With TAA `out` is a picture, else the user's array.
-// Texture never goes through the filter (Schied et al. 2017, section 3). The floors keep light that albedo does not
-// hold, as a coat reflects it, from becoming a light that is many times too bright for its neighbours: a dielectric
-// reflects some 0.04 of what comes in, whatever its colour. Modulate multiplies by the number that demodulate divided
-// by.
+// Texture never goes through the filter (Schied et al. 2017, section 3); albedo' is that of divisor.clh. Modulate
+// multiplies by the number that demodulate divided by.
 
-#define MIN_ALBEDO 0.02f
-#define MIN_CHANNEL 0.04f  // of the greatest channel
 #define MAX_CHANNEL 1e10f  // of a radiance or a normal; the sun's disc has 2e9 cd/m2
 #define MIN_DEPTH 1e-20f
 #define MAX_DEPTH 1e20f     // some renderers write their greatest number where nothing was hit
@@ -37,25 +31,6 @@ INLINE Color known_color(Color c) {
     UNROLLED_FOR(k, 3) c.channel[k] = where(good, c.channel[k], (floatv)(0.0f));
     return c;
 }
-
-#if HAS_ALBEDO
-// White where it is NaN; what is above white is left to the light, lest another pixel's light be multiplied by it.
-INLINE Color known_albedo(const int4 size, int x, int y, __global const float *albedo) {
-    Color a = load_color(size, x, y, albedo);
-    UNROLLED_FOR(k, 3) {
-        a.channel[k] = where(a.channel[k] < 1.0f, max(a.channel[k], (floatv)(0.0f)), (floatv)(1.0f));
-    }
-    return a;
-}
-
-// What light is divided by, and multiplied by again.
-INLINE Color divisor(Color albedo) {
-    const floatv greatest = max(max(albedo.channel[0], albedo.channel[1]), albedo.channel[2]);
-    const floatv least = max(MIN_CHANNEL * greatest, (floatv)(MIN_ALBEDO));
-    UNROLLED_FOR(k, 3) albedo.channel[k] = max(albedo.channel[k], least);
-    return albedo;
-}
-#endif
 
 #if HAS_EMISSION
 INLINE Color known_emission(const int4 size, int x, int y, __global const float *emission) {
@@ -160,30 +135,3 @@ KERNEL modulate(const int4 size,
     store_color(c, size, x, y, out);
 #endif
 }
-
-#ifdef CONFIDENCE_STANDARD_ERROR
-// The levels take what their taps hold for independent, which it is not, and know nothing of what they blur: measured,
-// the root of the variance that is left is a third of the error.
-#define CALIBRATION 3.0f
-
-KERNEL standard_error(const int4 size,
-#if HAS_ALBEDO
-                      __global const float *restrict albedo,
-#endif
-                      __global const light_t *restrict illumination, __global float *restrict confidence) {
-    const int x = first_column(), y = row();
-    if (x >= size.x || y >= size.y) return;
-    const int here = at(size, x, y);
-    floatv variance = (floatv)(0.0f);
-    UNROLLED_FOR(s, SIGNALS) {
-        variance += load_variance(PLANE(size, illumination, ILLUMINATION_VARIANCE, s, 0) + here);
-    }
-    floatv error = CALIBRATION * sqrt(variance);
-#if HAS_ALBEDO
-    const Color texture = divisor(known_albedo(size, x, y, albedo));
-    error *= luminance(texture.channel[0], texture.channel[1], texture.channel[2]);
-#endif
-    const floatv inside = where(x + LANES < size.x, error, (floatv)(0.0f));
-    store(inside, SHARED_PLANE(size, confidence, CONFIDENCE_STANDARD_ERROR) + here);
-}
-#endif

@@ -38,6 +38,8 @@ HEADERS = (
 MORE_HEADERS: Mapping[str, tuple[str, ...]] = {
     "temporal": ("reprojection.clh",),
     "predict": ("reprojection.clh",),
+    "modulate": ("divisor.clh",),
+    "confidence": ("divisor.clh",),
     "change": ("significance.clh",),
     "update": ("significance.clh",),
 }

@@ -250,7 +250,7 @@ class Kalman(WaveletFilter):
         albedo = (user("albedo"),) if inputs.divides_by_albedo else ()
         error = Quantity(STANDARD_ERROR, stage=STANDARD_ERROR)
         yield Pass(
-            "modulate",
+            "confidence",
             "standard_error",
             reads=(*albedo, access(filtered, "illumination", {"variance": HERE})),
             writes=(access(Resource("confidence", "confidence", (error,))),),

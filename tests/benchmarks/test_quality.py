@@ -76,7 +76,7 @@ def test_all_frames_that_history_is_long_in_are_judged() -> None:
     ("arguments", "message"),
     [
         (("--size", "64x8"), "--size: expected at least 11x11 pixels, which SSIM needs, got 64x8"),
-        (("--filter", "nlm"), "--filter: expected svgf or"),
+        (("--filter", "nlm"), "--filter: expected kalman or svgf or"),
         (("--picture", "1"), r"--picture: expected frames out of 2\.\.3 of swing, got 1"),
     ],
 )

@@ -33,7 +33,7 @@ def test_each_filter_gets_a_double_that_is_antialiased() -> None:
 
 
 def test_what_is_no_filter_or_none_of_its_settings_is_refused() -> None:
-    with pytest.raises(SvgfError, match="--filter: expected svgf or"):
+    with pytest.raises(SvgfError, match="--filter: expected kalman or svgf or"):
         rivals.parse_filters(["nlm"])
     with pytest.raises(SvgfError, match="--set"):
         rivals.parse_filters(["svgf,colour=red"])

@@ -1,0 +1,31 @@
+// The standard error of the result: how far each pixel's luminance may lie off the truth, as a standard deviation.
+//
+//   3 sqrt(sum over signals Var) * l(albedo')
+//
+// in   albedo where the frame has it; illumination: the variance that the last level leaves
+// out  confidence: the standard error
+
+// The levels take what their taps hold for independent, which it is not, and know nothing of what they blur: measured,
+// the root of the variance that is left is a third of the error.
+#define CALIBRATION 3.0f
+
+KERNEL standard_error(const int4 size,
+#if HAS_ALBEDO
+                      __global const float *restrict albedo,
+#endif
+                      __global const light_t *restrict illumination, __global float *restrict confidence) {
+    const int x = first_column(), y = row();
+    if (x >= size.x || y >= size.y) return;
+    const int here = at(size, x, y);
+    floatv variance = (floatv)(0.0f);
+    UNROLLED_FOR(s, SIGNALS) {
+        variance += load_variance(PLANE(size, illumination, ILLUMINATION_VARIANCE, s, 0) + here);
+    }
+    floatv error = CALIBRATION * sqrt(variance);
+#if HAS_ALBEDO
+    const Color texture = divisor(known_albedo(size, x, y, albedo));
+    error *= luminance(texture.channel[0], texture.channel[1], texture.channel[2]);
+#endif
+    const floatv inside = where(x + LANES < size.x, error, (floatv)(0.0f));
+    store(inside, SHARED_PLANE(size, confidence, CONFIDENCE_STANDARD_ERROR) + here);
+}
