@@ -73,3 +73,16 @@ def bumpy_sequence(
     """Bumpy frames with these fields; every frame moves in a direction of its own."""
     rng = np.random.default_rng(seed)
     return [only(bumpy(rng, shape), fields, motion) for _ in range(count)]
+
+
+def changing_sequence(fields: tuple[str, ...], *, motion: int = 3) -> list[Frame]:
+    """Bumpy frames with thin poles, that no pixel of even coordinates shows, in light that changes by strides."""
+    rng = np.random.default_rng(2017)
+    poles = np.arange(SHAPE[1]) % 6 == 3
+    left = np.arange(SHAPE[1])[:, None] < SHAPE[1] // 2
+
+    def lit(frame: Frame, gain: float) -> Frame:
+        lights = {name: getattr(frame, name) * np.where(left, gain, 1) for name in ("color", "direct", "indirect")}
+        return wall(**frame.present() | lights | {"depth": frame.depth * np.where(poles, 0.5, 1)})
+
+    return [only(lit(bumpy(rng), gain), fields, motion) for gain in (1, 1, 8, 8, 0.1, 1)]

@@ -9,11 +9,11 @@ from functools import partial
 
 import pytest
 
-from svgf_cl import Eaw, Frame, Settings
+from svgf_cl import Eaw, Frame, Kalman, Settings
 from svgf_cl.filters.filter import Filter
 from svgf_cl.oracle.accuracy import Deviation, deviations
 from tests.denoising import vector_width
-from tests.frames import FULL, PLAIN, SPLIT, bumpy_sequence
+from tests.frames import FULL, PLAIN, SPLIT, bumpy_sequence, changing_sequence
 
 # Largest error of any pixel, relative as defined in svgf_cl.compare.rounding; about three times what was measured.
 # float32 rounds by 2^-24 = 6e-8 of a value. Where an error exceeds a few of these, something amplifies it.
@@ -94,6 +94,31 @@ EAW_CASES = {
     "EAW, split, unusual settings": Case(partial(bumpy_sequence, SPLIT), UNUSUAL_EAW),
     "EAW, split, antialiased": Case(partial(bumpy_sequence, SPLIT), Eaw(taa=True, taps="5x5")),
     "EAW, albedo alone": Case(partial(bumpy_sequence, ("color", "albedo"), motion=2), Eaw(sigma_color=5), 1),
+}
+
+UNUSUAL_KALMAN = Kalman(
+    iterations=3,
+    sigma_depth=3.0,
+    sigma_normal=24.0,
+    sigma_luminance=6.0,
+    depth_slope_floor=4e-3,
+    alpha_color=0.1,
+    depth_threshold=0.03,
+    normal_threshold=0.8,
+    change_threshold=1.5,
+    change_sigma_depth=5.0,
+    change_sigma_normal=6.0,
+    standard_error=True,
+    taa=True,
+    alpha_taa=0.3,
+)
+KALMAN_CASES = {
+    "Kalman, plain": Case(partial(changing_sequence, PLAIN), Kalman()),
+    "Kalman, full": Case(partial(changing_sequence, FULL), Kalman(taps="5x5", standard_error=True)),
+    "Kalman, split, unusual settings": Case(partial(changing_sequence, SPLIT), UNUSUAL_KALMAN),
+    "Kalman, split": Case(partial(changing_sequence, SPLIT), Kalman(), 8),
+    "Kalman, albedo alone": Case(partial(changing_sequence, ("color", "albedo"), motion=2), Kalman(), 1),
+    "Kalman, ids alone": Case(partial(changing_sequence, ("color", "id"), motion=2), Kalman(taa=True), 4),
 }
 
 every_case = pytest.mark.parametrize("case", CASES)

@@ -317,21 +317,16 @@ class Pipeline:
 
     def _check_over(self, resource: Resource) -> None:
         """Raise `ValueError` if a buffer that this one may be written over is read beside the pixel, or later."""
-        begun = False
-        for entry in self.passes:
-            begins = not begun and any(each.of == Buffer(resource) for each in entry.writes)
+        first = [Buffer(resource) in {each.of for each in entry.writes} for entry in self.passes].index(True)
+        for entry in self.passes[first:]:
             for each in entry.reads:
-                if isinstance(each.of, Buffer) and each.of.resource.name == resource.over:
-                    if begun:
-                        raise ValueError(
-                            f"{entry.label}: expected no read of {each.of} once {resource.name} is over it"
-                        )
-                    if begins and any(use.taps != HERE for use in each.uses):
-                        raise ValueError(
-                            f"{entry.label}: expected a read of {each.of} at the pixel itself alone, as {resource.name} "
-                            "may be written over it"
-                        )
-            begun = begun or begins
+                if not isinstance(each.of, Buffer) or each.of.resource.name != resource.over:
+                    continue
+                if entry is not self.passes[first] or any(use.taps != HERE for use in each.uses):
+                    raise ValueError(
+                        f"{entry.label}: expected {each.of} to be read before {self.passes[first].label} writes "
+                        f"{resource.name} over it, or by that pass at the pixel itself alone"
+                    )
 
     @cached_property
     def resources(self) -> tuple[Resource, ...]:

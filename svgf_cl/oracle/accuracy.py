@@ -89,7 +89,10 @@ def deviations(
         colours = {"out"} | {name for name, _, quantity in shown if quantity.channels == 3}
         for kernel, made in oracle_of(settings, frame.shape).kernels(frame, now, past):
             for stage, expected in made.items():
-                size = counted_against(largest_channel(expected) if stage in colours else np.abs(expected))
+                size = largest_channel(expected) if stage in colours else np.abs(expected)
+                if (expected < 0).any():  # a difference, of what is as large as it is on average
+                    size = size + size.mean()
+                size = counted_against(size)
                 error = np.abs(now[stage] - expected)
                 found.setdefault(stage, []).append(Deviation.of(kernel, error, np.broadcast_to(size, error.shape)))
         past = Past(seen_guides(frame, now), now)

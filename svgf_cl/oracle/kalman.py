@@ -24,6 +24,7 @@ DOUBT_OF_CHANGE, RELATIVE_DOUBT, MOST_DOUBT = 4.0, 1e-5, 1e3
 ENOUGH_AROUND = 1e-3  # of the weights of the even pixels
 SHORT_HISTORY, SHARE_OF_VARIANCE = 0.5, 0.5
 UNKNOWN = -1.0
+CALIBRATION = 3.0  # of the standard error
 LEAST_DIVISOR = 1e-30
 
 EVERY_SECOND = np.s_[..., ::2, ::2]
@@ -41,7 +42,7 @@ def predict(now: Stages, guides: Guides, past: Past | None, settings: Kalman) ->
     if past is not None:
         around = footprint(guides, past.guides, settings)
         shown = luminance(past.stages[f"level_{settings.iterations}"])
-        state = past.stages | {"spread": past.stages["sample_variance"], "luminance": shown}
+        state = {**past.stages, "spread": past.stages["sample_variance"], "luminance": shown}
         predicted = {name: around.mean(around.taps(state[name])) for name in predicted}
         color, before = (around.mean(around.taps(state[name])) for name in ("accumulated", "residual"))
         known = around.found
@@ -242,8 +243,19 @@ def guidance(now: Stages, guides: Guides, settings: Kalman) -> dict[str, Array]:
     }
 
 
+def standard_error(variance: Array, guides: Guides) -> Array:
+    """How far the result's luminance may lie off the truth, as a standard deviation: (H, W)."""
+    error: Array = CALIBRATION * np.sqrt(variance.sum(axis=0)) * luminance(guides.divisor * np.ones(3))
+    return error
+
+
 class Oracle(FilterOracle[Kalman]):
     """Kalman over a sequence."""
+
+    def length(self, now: Stages) -> Array:
+        """One over W, of the first signal."""
+        inverse = now["inverse_count"][0]
+        return np.where(inverse > 0, 1 / np.where(inverse > 0, inverse, 1), 0)
 
     def filtered(self, now: Stages, guides: Guides, past: Past | None) -> Generator[Made, None, str]:
         """Prediction, test, update, guidance, then the levels."""
@@ -262,4 +274,6 @@ class Oracle(FilterOracle[Kalman]):
             light, variance = now[source[0]], now[source[1]]
             yield "atrous", dict(zip(target, atrous(light, variance, guides, level, settings, compared), strict=True))
             source = target
+        if settings.standard_error:
+            yield "standard_error", {"standard_error": standard_error(now[source[1]], guides)}
         return source[0]

@@ -266,9 +266,9 @@ def temporal(
 
 
 def modulate(illumination: Array, guides: Guides) -> Array:
-    """Section 5: out = sum over signals of c * albedo' + emission', (H, W, 3)."""
+    """Section 5: out = sum over signals of c * albedo' + emission', (H, W, 3); no green below 0."""
     # Emission is added once, whatever the number of signals.
-    image: Array = illumination.sum(axis=0) * guides.divisor + guides.emission
+    image: Array = np.maximum(illumination.sum(axis=0), (-np.inf, 0, -np.inf)) * guides.divisor + guides.emission
     return image
 
 
@@ -394,8 +394,12 @@ class FilterOracle(ABC, Generic[Chosen]):
             return
         yield "modulate", {"modulated": image}
         before = past.stages["antialiased"] if past else None
-        resolved, tone = taa(now["modulated"], guides, now["history_length"], before, settings)
+        resolved, tone = taa(now["modulated"], guides, self.length(now), before, settings)
         yield "taa", {"antialiased": tone, "out": resolved}
+
+    @abstractmethod
+    def length(self, now: Stages) -> Array:
+        """N, of how many frames the history is, as antialiasing takes it: (H, W)."""
 
     @abstractmethod
     def filtered(self, now: Stages, guides: Guides, past: Past | None) -> Generator[Made, None, str]:
@@ -406,6 +410,10 @@ class TemporalOracle(FilterOracle[Chosen]):
     """A filter whose accumulation over time is that of section 2."""
 
     history: ClassVar[str]  # the stage that is the next frame's colour history
+
+    def length(self, now: Stages) -> Array:
+        """As it was counted."""
+        return now["history_length"]
 
     def filtered(self, now: Stages, guides: Guides, past: Past | None) -> Generator[Made, None, str]:
         """Accumulation, then what is done over space."""
