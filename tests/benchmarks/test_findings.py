@@ -11,6 +11,7 @@ pytest.importorskip("matplotlib")
 from benchmarks.findings import TITLE, Findings
 from benchmarks.measurements import Quality, Result, Times
 from benchmarks.variants import Variant
+from svgf_cl import Kalman
 
 FINDINGS = Findings(
     [
@@ -37,7 +38,7 @@ def test_files_are_written(tmp_path: Path) -> None:
     FINDINGS.write(tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {"results.json", "table.md", "plot.png"}
     record = json.loads((tmp_path / "results.json").read_text())
-    assert record["results"][1]["variant"]["settings"]["iterations"] == 5
+    assert record["results"][1]["variant"]["settings"]["iterations"] == Kalman().iterations
     assert record["results"][1]["quality"]["area"]["psnr"] == 29
 
 
