@@ -33,8 +33,38 @@ TOLERANCES = {
     "resolved": 5e-5,  # inverting the tone map amplifies by 1 + Y
 }
 
+KALMAN_TOLERANCES = TOLERANCES | {
+    "predicted": 3e-6,  # weighted means
+    "predicted_spread": 1e-5,
+    "predicted_inverse_count": 1e-6,
+    "predicted_tone": 1e-6,
+    "predicted_luminance": 3e-6,
+    "known_depth": 0.0,  # copied
+    "innovation": 2e-6,  # a difference, as all that are of both signs it is held against its mean size too
+    "innovation_residual": 5e-6,
+    "facet": 0.0,  # copied
+    "change": 3e-4,  # weights of exp of up to -80, squared for the share; means of both signs cancel
+    # How much is believed goes by a variance, <E^2> - <E>^2, of as few as two pixels: where they are nearly alike, or
+    # count for little beside the middle one, that cancels.
+    "correction": 3e-4,
+    "correction_residual": 1e-3,
+    "correction_doubt": 1e-3,
+    "correction_spread": 1e-3,
+    "accumulated": 1e-3,
+    "sample_variance": 1e-3,
+    "inverse_count": 1e-3,
+    "tone": 1e-3,
+    "residual": 1e-3,
+    "expected_luminance": 1e-3,
+    "expected_spread": 1e-3,
+    "guidance_1": 1e-3,  # a difference of nearly the same
+    "guidance": 1.5e-4,
+    "standard_error": 1e-6,
+}
+
 # Share of pixels that may be decided otherwise, where a tap lies within rounding of a threshold. None was, on PoCL.
 DECIDED_OTHERWISE = 5e-4
+KALMAN_DECIDED_OTHERWISE = 1e-3  # one of the 1000 that a coarse stage has; measured on all devices
 
 # The whole pipeline over a sequence against the whole oracle: errors of one frame are the next frame's input, yet they
 # do not build up, as the filter is an average. Measured: 3e-5, and 1e-4 with sigma_normal 1024.
@@ -145,3 +175,18 @@ def assert_case_follows_oracle(case: Case, *stages: str) -> None:
         if kind in stages:
             assert deviation.relative <= TOLERANCES[kind], deviation
             assert deviation.decided_otherwise <= DECIDED_OTHERWISE, deviation
+
+
+def assert_kalman_follows_oracle(case: Case) -> None:
+    """Every stage keeps the tolerance of Kalman's."""
+    for name, deviation in measured(case).items():
+        assert deviation.relative <= KALMAN_TOLERANCES[kalman_kind(name)], (name, deviation)
+        assert deviation.decided_otherwise <= KALMAN_DECIDED_OTHERWISE, (name, deviation)
+
+
+def kalman_kind(stage: str) -> str:
+    """Of which kind a stage of Kalman is: the name of its tolerance."""
+    for kind in ("facet", "change"):
+        if stage.startswith(f"{kind}_"):
+            return kind
+    return "level" + stage[len("level_1") :] if stage.startswith("level_") else stage

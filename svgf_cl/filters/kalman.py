@@ -72,7 +72,7 @@ class Kalman(WaveletFilter):
         (0.0, 1e3),
         unit="standard deviations",
         reason="How far the new frame must lie off the history to count as a change of light. Less follows moving "
-        "shadows sooner, more is steadier where nothing changes. 1000 turns the test off.",
+        "shadows sooner, more is steadier where nothing changes. At 1000 only light without any noise is tested.",
     )
     change_sigma_depth: float = number(
         4.0,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from svgf_cl.filters.formats import HALF_MAX
-from svgf_cl.oracle import albedo, svgf, temporal, wavelet
+from svgf_cl.oracle import albedo, kalman, svgf, temporal, wavelet
 
 # By the kernels' name. Where there are two values the second is that of 16-bit floats (HALF_HISTORY), or of 3x3 taps.
 EXPECTED = {
@@ -31,6 +31,19 @@ EXPECTED = {
     "RELATIVE_TOLERANCE": (svgf.LUMINANCE_TOLERANCE[0],),
     "LEAST_TOLERANCE": (svgf.LUMINANCE_TOLERANCE[1],),
     "MIDDLE": (wavelet.SPLINES[2][0], wavelet.SPLINES[1][0]),
+    "RESIDUAL_GAIN": (kalman.RESIDUAL_GAIN,),
+    "LEAST_SPREAD": (kalman.LEAST_SPREAD,),
+    "CORRELATED_2": (kalman.CORRELATED[2],),
+    "CORRELATED_3": (kalman.CORRELATED[3],),
+    "CORRELATED_4": (kalman.CORRELATED[4],),
+    "DOUBT_OF_CHANGE": (kalman.DOUBT_OF_CHANGE,),
+    "RELATIVE_DOUBT": (kalman.RELATIVE_DOUBT,),
+    "MOST_DOUBT": (kalman.MOST_DOUBT,),
+    "ENOUGH_AROUND": (kalman.ENOUGH_AROUND,),
+    "SHORT_HISTORY": (kalman.SHORT_HISTORY,),
+    "SHARE_OF_VARIANCE": (kalman.SHARE_OF_VARIANCE,),
+    "CALIBRATION": (kalman.CALIBRATION,),
+    "TINY": (kalman.LEAST_DIVISOR,),
     "NEARER": (temporal.NEARER,),
     "LEAST_HEADROOM": (temporal.HEADROOM,),
 }
