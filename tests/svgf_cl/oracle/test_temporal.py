@@ -305,6 +305,8 @@ class TestOracle:
         assert_allclose(self.run(kind, huge), self.run(kind, frames), rtol=1e-9)
 
     def test_mirrored_frames_give_the_mirrored_image(self, kind: type[Filter], rng: np.random.Generator) -> None:
+        if kind is Kalman:
+            pytest.skip("its blocks of 2x2 pixels begin on the left: mirrored, they hold other pixels")
         frames = [bumpy(rng) for _ in range(3)]
         flip = np.array((-1, 1, 1), np.float32)
         flipped = [Frame(**{name: value[:, ::-1] for name, value in f.present().items()}) for f in frames]
@@ -323,6 +325,6 @@ class TestOracle:
         for indirect in others:
             oracle = oracle_of(kind(), SHAPE)
             oracle.denoise(replace(scene, direct=direct, indirect=indirect))
-            results.append(oracle.stages["level_5"])
+            results.append(oracle.stages[f"level_{kind().iterations}"])
         assert_array_equal(results[0][0], results[1][0])
         assert (results[0][1] != results[1][1]).any()
