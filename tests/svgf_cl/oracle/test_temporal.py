@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from svgf_cl.filters import FILTERS, Settings
+from svgf_cl.filters import FILTERS, Kalman, Settings
 from svgf_cl.filters.filter import Filter
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.oracle import oracle_of
