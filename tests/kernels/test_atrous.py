@@ -107,5 +107,5 @@ def test_a_spot_spreads_as_far_as_the_levels_reach(iterations: int, taps: str) -
 def test_border_of_misses_changes_nothing() -> None:
     inner = wall(color=noise())
     frame = {name: np.pad(value, [(20, 3), (40, 7), (0, 0)][: value.ndim]) for name, value in inner.present().items()}
-    expected, out = feed(inner)[0], Denoiser(frame["depth"].shape).denoise(type(inner)(**frame))
+    expected, out = feed(inner)[0], Denoiser(frame["depth"].shape, settings=Settings()).denoise(type(inner)(**frame))
     assert_allclose(out[20:-3, 40:-7], expected, rtol=1e-6)
