@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from svgf_cl import Settings
+from svgf_cl import Kalman, Settings
 from svgf_cl.bench.cost import Cost, Loads, cost
 from svgf_cl.filters.signals import SPLITS, Inputs, Signal
 
@@ -113,6 +113,17 @@ def test_16_bits_load_half_as_many_bytes() -> None:
         loaded("atrous 3", settings=Settings(half_guides=chosen, half_history=chosen)) for chosen in (False, True)
     )
     assert full.bytes - half.bytes == 2 * (9 * (3 + 3 + 1) + 8)  # normals, colour, variance and its neighbours
+
+
+def test_every_second_pixel_of_every_second_row_costs_a_quarter() -> None:
+    """Of an image's pixel, on average; what is read of every pixel to make one of these counts four times."""
+    passes = {entry.label: entry for entry in Kalman().pipeline(INPUTS).passes}
+    mean, first = cost(passes["coarser_mean 1"]), cost(passes["innovation_mean"])
+    facets, change = 1 + 2 + 3, 1 + 3 + 3
+    assert mean.bytes == 4 * (facets + change + change) / 4  # facets, finer; change
+    assert mean.flops == passes["coarser_mean 1"].operations / 4
+    assert first.bytes == 4 * ((1 + 3) + (1 + 3 + 1) + (facets + change) / 4)  # depth, normal; innovation; both made
+    assert first.loads.bytes == 4 * ((4 + 2) + 4 * 3 + 4 * (1 + 3 + 1)) / 4  # a block of each; depth's slope
 
 
 def test_costs_scale() -> None:

@@ -23,6 +23,14 @@ def test_crop_finds_every_pixel(layout: Layout, count: int) -> None:
     assert_array_equal(layout.crop(planes), k * layout.plane + (y + HALO) * layout.pitch + HALO + x)
 
 
+@pytest.mark.parametrize("spacing", [1, 2, 3])
+@given(layouts)
+def test_every_so_many_pixels_are_those_from_the_first_on(spacing: int, layout: Layout) -> None:
+    coarse, taken = layout.every(spacing), np.indices((layout.height, layout.width))[:, ::spacing, ::spacing]
+    assert (coarse.height, coarse.width) == taken.shape[1:]
+    assert coarse.row_alignment == layout.row_alignment
+
+
 @pytest.mark.parametrize(("side", "indexable"), [(16000, True), (17000, False)])
 def test_indices_have_32_bits(side: int, indexable: bool) -> None:
     assert Layout(side, side).indexable(8) == indexable

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from numpy.testing import assert_array_equal
 
-from svgf_cl import Eaw, Inputs, Settings
+from svgf_cl import Inputs, Settings
 from svgf_cl.device.layout import HALO
+from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.formats import Format, Planes
 from svgf_cl.filters.pipeline import OUT, Buffer, Life, Pass, Pipeline, Quantity, Resource, access, user
 from svgf_cl.filters.taps import grid
 from tests.svgf_cl.filters.strategies import every_filter, every_inputs, every_pipeline
 
 RGB = Resource("rgb", "picture", (Quantity("color", 3),))
+COARSE = Resource("coarse", "coarse", (Quantity("mean"),), spacing=2)
+COARSER = Resource("coarser", "coarse", (Quantity("mean"),), spacing=4)
 
 
 class TestResource:
@@ -75,6 +79,43 @@ class TestPipeline:
         with pytest.raises(ValueError, match="a: expected arguments of different names, got size, out, out"):
             Pass("a", "a", reads=(user("color", "out"),), writes=(user("out"),))
 
+    def test_coarse_buffers_have_a_size_of_their_own(self) -> None:
+        fine = Pass("a", "a", reads=(user("color"),), writes=(access(RGB),))
+        down = Pass("b", "b", reads=(access(RGB),), writes=(access(COARSE),))
+        up = Pass("c", "c", reads=(access(COARSE),), writes=(user(OUT),))
+        assert [entry.sizes for entry in (fine, down, up)] == [("size",), *[("size", "coarse_size")] * 2]
+        assert [entry.spacing for entry in (fine, down, up)] == [1, 2, 1]
+        assert [entry.coarse_spacing for entry in (fine, down, up)] == [1, 2, 2]
+        assert down.arguments == ("size", "coarse_size", "rgb", "coarse")
+
+    @pytest.mark.parametrize(
+        ("reads", "writes"), [((COARSE,), (COARSER,)), ((RGB,), (RGB, COARSE)), ((COARSE, COARSER), (RGB,))]
+    )
+    def test_two_sizes_beside_the_image_are_refused(
+        self, reads: tuple[Resource, ...], writes: tuple[Resource, ...]
+    ) -> None:
+        with pytest.raises(ValueError, match="a: expected to write every pixel or every so many"):
+            Pass(
+                "a",
+                "a",
+                reads=tuple(access(each, "r" + each.name) for each in reads),
+                writes=tuple(map(access, writes)),
+            )
+
+    def test_a_buffer_that_is_written_over_is_read_no_more(self) -> None:
+        over = Resource("over", "picture", (Quantity("color", 3),), over="rgb")
+        first, second = (
+            Pass("a", "a", writes=(access(RGB),)),
+            Pass("b", "b", reads=(access(RGB),), writes=(access(over),)),
+        )
+        Pipeline((first, second))
+        late = Pass("c", "c", reads=(access(RGB), access(over)), writes=(user(OUT),))
+        with pytest.raises(ValueError, match="c: expected rgb to be read before b writes over over it"):
+            Pipeline((first, second, late))
+        beside = replace(second, reads=(access(RGB, taps={"color": grid(1)}),))
+        with pytest.raises(ValueError, match=r"b: expected rgb to be read .* at the pixel itself alone"):
+            Pipeline((first, beside))
+
     def test_constant_arrays_are_apart_from_their_owners(self) -> None:
         weights = np.ones(3)
         entry = Pass("a", "a", arrays={"weights": weights})
@@ -129,7 +170,7 @@ class TestEveryFilter:
             assert len(set(entry.arguments)) == len(entry.arguments)
 
     @given(every_filter, every_inputs)
-    def test_everything_read_is_there(self, filter_: Settings | Eaw, inputs: Inputs) -> None:
+    def test_everything_read_is_there(self, filter_: Filter, inputs: Inputs) -> None:
         pipeline = filter_.pipeline(inputs)
         there: set[Buffer | str] = {*inputs.fields}
         for resource in pipeline.lasting:  # from the last frame
@@ -140,7 +181,7 @@ class TestEveryFilter:
         assert OUT in {each.of for each in pipeline.passes[-1].writes}
 
     @given(every_filter, every_inputs)
-    def test_every_field_and_every_result_is_read(self, filter_: Settings | Eaw, inputs: Inputs) -> None:
+    def test_every_field_and_every_result_is_read(self, filter_: Filter, inputs: Inputs) -> None:
         pipeline = filter_.pipeline(inputs)
         read = {each.of.resource for entry in pipeline.passes for each in entry.reads if isinstance(each.of, Buffer)}
         assert read == set(pipeline.resources)
