@@ -10,7 +10,7 @@ import pytest
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.testing import assert_allclose
 
-from svgf_cl import Denoiser
+from svgf_cl import Denoiser, Settings
 from tests.denoising import feed
 from tests.frames import SHAPE, noise, wall
 from tests.oracle import assert_follows_oracle, every_case
