@@ -9,7 +9,7 @@
 //     v = min(1, C u),   t^2 = (1 - v)^2 (e - B)^2 / (max(f - e^2, (1e-3 S)^2) v),   b = max(0, 1 - threshold^2 / t^2)
 //     A += b (d - A),   B += b (e - B),   q = max(q (1 - b)^2, b^2 v)
 //
-// in   innovation: depth, D, E;  prediction: S;  guide: depth, normal
+// in   innovation: D, E;  prediction: S;  guide: depth, normal
 // out  change: d, r, e, f, u;  correction: A, B, q, and R = r - l(d)^2 of pass 2
 // u is how much smaller the variance of a mean is than that of a sample. The recursion does not know that taps of later
 // passes are correlated: C makes up for it.
@@ -121,9 +121,15 @@ KERNEL innovation_mean(const int4 size, const int4 coarse_size, const float sigm
     g.y = slope(above.side[0], z.side[0], below.side[0]);
     floatv normal[3];
     UNROLLED_FOR(k, 3) normal[k] = load_normal_pairs(normal_plane(size, guide, k) + centre).side[0];
-    const floatv own = load_pairs(SHARED_PLANE(size, innovation, INNOVATION_DEPTH) + centre).side[0];
+    Pairs residual[SIGNALS][2];
+    UNROLLED_FOR(s, SIGNALS) {
+        UNROLLED_FOR(dy, 2) {
+            residual[s][dy] = load_pairs(PLANE(size, innovation, INNOVATION_RESIDUAL, s, 0) + centre + dy * size.z);
+        }
+    }
+    const intv known = (z.side[0] > 0.0f) & is_known(residual[0][0].side[0]);
 
-    store(own, SHARED_PLANE(coarse_size, facets, FACETS_DEPTH) + here);
+    store(where(known, z.side[0], (floatv)(0.0f)), SHARED_PLANE(coarse_size, facets, FACETS_DEPTH) + here);
     store(g.x, PLANE(coarse_size, facets, FACETS_GRADIENT, 0, 0) + here);
     store(g.y, PLANE(coarse_size, facets, FACETS_GRADIENT, 0, 1) + here);
     UNROLLED_FOR(k, 3) store(normal[k], PLANE(coarse_size, facets, FACETS_NORMAL, 0, k) + here);
@@ -132,15 +138,15 @@ KERNEL innovation_mean(const int4 size, const int4 coarse_size, const float sigm
     Means sum = no_means();
     UNROLLED_FOR(dy, 2) {
         const int tap = centre + dy * size.z;
-        const Pairs known = load_pairs(SHARED_PLANE(size, innovation, INNOVATION_DEPTH) + tap);
         Pairs there[3];
         UNROLLED_FOR(k, 3) there[k] = load_normal_pairs(normal_plane(size, guide, k) + tap);
         floatv w[2];
         UNROLLED_FOR(dx, 2) {
             floatv n[3];
             UNROLLED_FOR(k, 3) n[k] = there[k].side[dx];
-            w[dx] = where(own > 0.0f, tap_share(facet, dx, dy, 0.0f, known.side[dx], n), (floatv)(0.0f));
-            if (dx == 0 && dy == 0) w[dx] = where(own > 0.0f, (floatv)(1.0f), (floatv)(0.0f));
+            const floatv depth_there = dy ? below.side[dx] : z.side[dx];
+            w[dx] = (dx == 0 && dy == 0) ? (floatv)(1.0f) : tap_share(facet, dx, dy, 0.0f, depth_there, n);
+            w[dx] = where(known & is_known(residual[0][dy].side[dx]), w[dx], (floatv)(0.0f));
             sum.weight += w[dx];
             sum.share += w[dx] * w[dx];
         }
@@ -153,10 +159,10 @@ KERNEL innovation_mean(const int4 size, const int4 coarse_size, const float sigm
                     if (k == LIGHT_LUMINANCE) m->square += w[dx] * off.side[dx] * off.side[dx];
                 }
             }
-            const Pairs residual = load_pairs(PLANE(size, innovation, INNOVATION_RESIDUAL, s, 0) + tap);
             UNROLLED_FOR(dx, 2) {
-                m->residual += w[dx] * residual.side[dx];
-                m->residual_square += w[dx] * residual.side[dx] * residual.side[dx];
+                const floatv off = residual[s][dy].side[dx];
+                m->residual += w[dx] * off;
+                m->residual_square += w[dx] * off * off;
             }
         }
     }

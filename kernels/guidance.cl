@@ -3,9 +3,9 @@
 //   l~ = sum h w l(H) / sum h w over 3x3 taps,  w = w_z w_n
 //   G := l~ where nothing was known
 //   first = l~ + G - l(H)
-//   Var = W (V + W R),  or where W > 1/2, 1/2 of the variance of l(H) over 7x7 taps,  w = w_z w_n w_a
+//   Var := 1/2 of the variance of l(H) over 7x7 taps, w = w_z w_n w_a, where W > 1/2
 //
-// in   guide;  state: H, V, W;  expected: G, R
+// in   guide;  state: H, W;  expected: G, Var
 // out  illumination (the state): Var;  first, guidance: the luminance that a level adds to that of its own light
 // Level i compares (l(c_i) + G) / 2. In the first level l(c_i) is H itself, so that its smoothed form stands in for it.
 
@@ -81,14 +81,12 @@ KERNEL guidance(const int4 size, const float sigma_depth, const float sigma_norm
     UNROLLED_FOR(s, SIGNALS) {
         smooth[s] *= share;
         const floatv past = load(PLANE(size, expected, EXPECTED_LUMINANCE, s, 0) + here);
-        const floatv spread = load(PLANE(size, expected, EXPECTED_SPREAD, s, 0) + here);
         const floatv guess = where(hit, where(past < 0.0f, smooth[s], past), (floatv)(0.0f));
         store(guess, PLANE(size, guidance, GUIDANCE_LUMINANCE, s, 0) + here);
         store(where(hit, smooth[s] + guess - own[s], (floatv)(0.0f)),
               PLANE(size, first, GUIDANCE_LUMINANCE, s, 0) + here);
         const floatv count = load_light(PLANE(size, state, ILLUMINATION_INVERSE_COUNT, s, 0) + here);
-        const floatv over_time = load_variance(PLANE(size, state, ILLUMINATION_SPREAD, s, 0) + here);
-        variance[s] = count * (over_time + count * spread);
+        variance[s] = load(PLANE(size, expected, EXPECTED_VARIANCE, s, 0) + here);
         brief[s] = hit & (count > SHORT_HISTORY);
         any_brief |= brief[s];
     }

@@ -7,9 +7,8 @@
 //
 // in   motion, guide, illumination: c; of the previous frame: guide, state, filtered light (its luminance is G)
 // out  prediction: H, V, W, S, G (W = 0 where nothing is known);
-//      innovation: depth (0 where nothing is known), D, E
-// A firefly must not move its surroundings, so D is limited. The root makes the noise of bright and of dark samples
-// alike.
+//      innovation: D, E (NOTHING_KNOWN where nothing is known)
+// The root makes the noise of bright and of dark samples alike.
 
 #define RESIDUAL_GAIN 0.3f  // of the running residual
 
@@ -100,8 +99,7 @@ KERNEL predict(const int4 size, const float depth_threshold, const float normal_
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
     const Expected e = expect(size, x, y, motion, guide, depth_threshold, albedo_threshold);
-    const floatv depth = load(SHARED_PLANE(size, guide, GUIDE_DEPTH) + here);
-    const intv hit = depth > 0.0f;
+    const intv hit = load(SHARED_PLANE(size, guide, GUIDE_DEPTH) + here) > 0.0f;
     const Previous previous = {previous_guide, previous_state, filtered};
 
     Sums sums = no_sums();
@@ -119,7 +117,6 @@ KERNEL predict(const int4 size, const float depth_threshold, const float normal_
 
     const intv known = hit & (sums.weight > ENOUGH);
     const floatv share = where(known, 1.0f / max(sums.weight, (floatv)(ENOUGH)), (floatv)(0.0f));
-    store(where(known, depth, (floatv)(0.0f)), SHARED_PLANE(size, innovation, INNOVATION_DEPTH) + here);
     UNROLLED_FOR(s, SIGNALS) {
         const State sum = sums.state[s];
         const floatv tone = share * sum.tone;
@@ -131,7 +128,7 @@ KERNEL predict(const int4 size, const float depth_threshold, const float normal_
             store(sample[k] - predicted, PLANE(size, innovation, INNOVATION_COLOR, s, k) + here);
         }
         const floatv surprise = sqrt(sample[LIGHT_LUMINANCE]) - tone, before = share * sum.residual;
-        const floatv residual = where(known, before + RESIDUAL_GAIN * (surprise - before), (floatv)(0.0f));
+        const floatv residual = where(known, before + RESIDUAL_GAIN * (surprise - before), (floatv)(NOTHING_KNOWN));
         store(residual, PLANE(size, innovation, INNOVATION_RESIDUAL, s, 0) + here);
         store(share * sum.spread, PLANE(size, prediction, PREDICTION_SPREAD, s, 0) + here);
         store(share * sum.count, PLANE(size, prediction, PREDICTION_INVERSE_COUNT, s, 0) + here);

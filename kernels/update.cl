@@ -6,9 +6,10 @@
 //   H += A,  S += B,  E -= B,  W += q,  G += l(A)
 //   a = max(alpha, W / (1 + W)),  d = l(c) - l(H)
 //   H += a (c - H),  S += a (phi - S),  E *= 1 - a,  V = (1 - a) (V + a d^2),  W = a^2 + (1 - a)^2 W
+//   Var = W (V + W R / (1 + min(W, 1)))
 //
 // in   guide;  prediction, innovation;  facets, correction
-// out  state: H, V, W, S, E;  expected: G (-1 where nothing is known), R / (1 + min(W, 1))
+// out  state: H, V, W, S, E;  expected: G (-1 where nothing is known), Var
 // W is the variance of H, in units of that of a sample: about 1 / N after N samples.
 
 #define DOUBT_OF_CHANGE 4.0f
@@ -122,9 +123,10 @@ INLINE Corrections direct(const int4 size, int here, Facet facet, float threshol
             const int tap = here + dy * size.z + dx;
             floatv normal[3];
             load_normals(size, tap, guide, normal);
-            const floatv z = load(SHARED_PLANE(size, innovation, INNOVATION_DEPTH) + tap);
+            const floatv z = load(SHARED_PLANE(size, guide, GUIDE_DEPTH) + tap);
+            const intv known = is_known(load(PLANE(size, innovation, INNOVATION_RESIDUAL, 0, 0) + tap));
             floatv w = weight(facet_exponent(facet, depth_scale(facet, dx, dy), 0.0f, z, normal));
-            w = where((z > 0.0f) & (w > FAINTEST), w, (floatv)(0.0f));
+            w = where((z > 0.0f) & known & (w > FAINTEST), w, (floatv)(0.0f));
             sum.weight += w;
             squares += w * w;
             UNROLLED_FOR(s, SIGNALS) {
@@ -173,8 +175,8 @@ KERNEL update(const int4 size, const int4 coarse_size, const float sigma_depth, 
     const int x = first_column(), y = row();
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
-    const intv known = load(SHARED_PLANE(size, innovation, INNOVATION_DEPTH) + here) > 0.0f;
     const intv hit = load(SHARED_PLANE(size, guide, GUIDE_DEPTH) + here) > 0.0f;
+    const intv known = hit & is_known(load(PLANE(size, innovation, INNOVATION_RESIDUAL, 0, 0) + here));
     Corrections changed = no_corrections();
     if (any_lane(known)) {
         __global const float *depth = SHARED_PLANE(size, guide, GUIDE_DEPTH);
@@ -219,6 +221,8 @@ KERNEL update(const int4 size, const int4 coarse_size, const float sigma_depth, 
         const floatv phi = sqrt(sample[LIGHT_LUMINANCE]);
         const floatv spread_now = where(known, kept * (spread_before + a * off * off), (floatv)(0.0f));
         const floatv count_now = where(known, a * a + kept * kept * count, where(hit, (floatv)(1.0f), (floatv)(0.0f)));
+        const floatv variance = count_now * (spread_now + where(known, count_now * spread, (floatv)(0.0f)));
+        store(variance, PLANE(size, expected, EXPECTED_VARIANCE, s, 0) + here);
         store_variance(spread_now, PLANE(size, state, ILLUMINATION_SPREAD, s, 0) + here);
         store_light(count_now, PLANE(size, state, ILLUMINATION_INVERSE_COUNT, s, 0) + here);
         store_light(where(known, tone + a * (phi - tone), phi), PLANE(size, state, ILLUMINATION_TONE, s, 0) + here);
@@ -226,6 +230,5 @@ KERNEL update(const int4 size, const int4 coarse_size, const float sigma_depth, 
                     PLANE(size, state, ILLUMINATION_RESIDUAL, s, 0) + here);
         const floatv guess = max(luminance_before + change, (floatv)(0.0f));
         store(where(known, guess, (floatv)(UNKNOWN)), PLANE(size, expected, EXPECTED_LUMINANCE, s, 0) + here);
-        store(where(known, spread, (floatv)(0.0f)), PLANE(size, expected, EXPECTED_SPREAD, s, 0) + here);
     }
 }

@@ -84,9 +84,9 @@ def taps_text(taps: Taps) -> str:
 def buffer_row(resource: Resource) -> list[str]:
     """One buffer."""
     formats = dict.fromkeys(str(quantity.format.dtype) for quantity in resource.quantities)
-    size = sum(quantity.nbytes for quantity in resource.quantities)
+    size = f"{sum(quantity.nbytes for quantity in resource.quantities) / resource.spacing**2:g}"
     quantities = ", ".join(map(planes_text, resource.quantities))
-    return [resource.name, quantities, ", ".join(formats), str(size), LIVES[resource.life], resource.over]
+    return [resource.name, quantities, ", ".join(formats), size, LIVES[resource.life], resource.over]
 
 
 def planes_text(quantity: Quantity) -> str:
@@ -98,9 +98,9 @@ def memory(pipeline: Pipeline) -> str:
     """Which buffers take turns in the same memory."""
     slots = memory_slots(pipeline)
     shared = [", ".join(map(str, slot.buffers)) for slot in slots if len(slot.buffers) > 1]
-    total = sum(slot.planes.depth for slot in slots) // 8
+    total = sum(slot.planes.depth / slot.spacing**2 for slot in slots) / 8
     turns = "; ".join(shared) or "none"
-    return f"{total} bytes a pixel in all. Buffers that take turns in the same memory: {turns}.\n"
+    return f"{total:g} bytes a pixel in all. Buffers that take turns in the same memory: {turns}.\n"
 
 
 def joined(parts: Iterable[str]) -> str:

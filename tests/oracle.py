@@ -39,7 +39,6 @@ KALMAN_TOLERANCES = TOLERANCES | {
     "predicted_inverse_count": 1e-6,
     "predicted_tone": 1e-6,
     "predicted_luminance": 3e-6,
-    "known_depth": 0.0,  # copied
     "innovation": 2e-6,  # a difference, as all that are of both signs it is held against its mean size too
     "innovation_residual": 5e-6,
     "facet": 0.0,  # copied
@@ -56,7 +55,7 @@ KALMAN_TOLERANCES = TOLERANCES | {
     "tone": 1e-3,
     "residual": 1e-3,
     "expected_luminance": 1e-3,
-    "expected_spread": 1e-3,
+    "expected_variance": 1e-3,
     "guidance_1": 1e-3,  # a difference of nearly the same
     "guidance": 1.5e-4,
     "standard_error": 1e-6,

@@ -37,11 +37,11 @@ HEADERS = (
 # What only some sources need: another would be compiled again for macros that it has no use for.
 MORE_HEADERS: Mapping[str, tuple[str, ...]] = {
     "temporal": ("reprojection.clh",),
-    "predict": ("reprojection.clh",),
+    "predict": ("reprojection.clh", "innovation.clh"),
     "modulate": ("divisor.clh",),
     "confidence": ("divisor.clh",),
-    "change": ("significance.clh",),
-    "update": ("significance.clh",),
+    "change": ("innovation.clh", "significance.clh"),
+    "update": ("innovation.clh", "significance.clh"),
 }
 
 # No fast-math: it would allow the compiler to drop the guards against NaN and infinity. Weights too small to count are

@@ -223,7 +223,7 @@ class Kalman(WaveletFilter):
         )
 
     def guidance_pass(self, inputs: Inputs) -> Pass:
-        """The variance of the mean, and the luminance by which the levels tell light apart."""
+        """The luminance by which the levels tell light apart, and the variance where history is short."""
         guide, state = self.guide(inputs), self.state(inputs)
         near = grid(1)
         return Pass(
@@ -233,7 +233,7 @@ class Kalman(WaveletFilter):
             reads=(
                 access(guide, taps={"depth": near, "normal": near}),
                 access(self.expected(inputs)),
-                access(state, taps={"color": near, "spread": HERE, "inverse_count": HERE}),
+                access(state, taps={"color": near, "inverse_count": HERE}),
             ),
             writes=(
                 access(state, "illumination", {"variance": HERE}),
@@ -283,11 +283,11 @@ class Kalman(WaveletFilter):
         return Resource("prediction", "prediction", (color, *others))
 
     def innovation(self, inputs: Inputs) -> Resource:
-        """How the new frame differs from the prediction; its depth is 0 where there is none."""
+        """How the new frame differs from the prediction; the residual is huge where there is none."""
         signals = len(inputs.signals)
         color = Quantity("color", 3, signals, stage="innovation", is_light=True)
         residual = Quantity("residual", 1, signals, stage="innovation_residual")
-        return Resource("innovation", "innovation", (Quantity("depth", stage="known_depth"), color, residual))
+        return Resource("innovation", "innovation", (color, residual))
 
     def facets(self) -> Resource:
         """The surface at every second pixel; depth is 0 where there is no prediction."""
@@ -311,8 +311,8 @@ class Kalman(WaveletFilter):
         return Resource("correction", "correction", (color, *others), spacing=SPACING)
 
     def expected(self, inputs: Inputs) -> Resource:
-        """The luminance that will be shown, as far as the past tells, and the variance of a sample over space."""
-        names = ("luminance", "spread")
+        """The luminance that will be shown, as far as the past tells, and the variance of the mean."""
+        names = ("luminance", "variance")
         quantities = tuple(Quantity(name, 1, len(inputs.signals), stage=f"expected_{name}") for name in names)
         return Resource("expected", "expected", quantities)
 

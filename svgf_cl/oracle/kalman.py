@@ -24,6 +24,7 @@ DOUBT_OF_CHANGE, RELATIVE_DOUBT, MOST_DOUBT = 4.0, 1e-5, 1e3
 ENOUGH_AROUND = 1e-3  # of the weights of the even pixels
 SHORT_HISTORY, SHARE_OF_VARIANCE = 0.5, 0.5
 UNKNOWN = -1.0
+NOTHING_KNOWN = 1e9  # in place of a residual
 CALIBRATION = 3.0  # of the standard error
 LEAST_DIVISOR = 1e-30
 
@@ -50,10 +51,14 @@ def predict(now: Stages, guides: Guides, past: Past | None, settings: Kalman) ->
     return {
         "predicted": color,
         **{f"predicted_{name}": values for name, values in predicted.items()},
-        "known_depth": np.where(known, guides.depth, 0),
         "innovation": light - color,
-        "innovation_residual": np.where(known, before + RESIDUAL_GAIN * (surprise - before), 0),
+        "innovation_residual": np.where(known, before + RESIDUAL_GAIN * (surprise - before), NOTHING_KNOWN),
     }
+
+
+def known_depth(now: Stages, guides: Guides) -> Array:
+    """Depth where something is known of the light, else 0."""
+    return np.where(now["innovation_residual"][0] < NOTHING_KNOWN, guides.depth, 0)
 
 
 def change_tolerance(settings: Kalman) -> Tolerance:
@@ -100,7 +105,7 @@ def stacked(now: Stages, stage: str) -> Array:
 
 def innovation_mean(now: Stages, guides: Guides, settings: Kalman) -> dict[str, Array]:
     """Pass 1 of the test, from all pixels to every second one."""
-    facets = Facets(now["known_depth"], guides.normal, depth_gradient(guides.depth))
+    facets = Facets(known_depth(now, guides), guides.normal, depth_gradient(guides.depth))
     taps = [(offset, 1.0) for offset in BLOCK]
     means, u = mean_over(taps, innovations(now), np.ones(guides.depth.shape), facets, settings)
     return {
@@ -157,7 +162,7 @@ def correction(now: Stages, guides: Guides, settings: Kalman) -> Array:
     shape = guides.depth.shape
     parts = [now[f"correction_{name}"][..., None] for name in ("residual", "doubt", "spread")]
     coarse = np.concatenate((now["correction"], *parts), axis=-1)
-    facets = Facets(now["known_depth"], guides.normal, depth_gradient(guides.depth))
+    facets = Facets(known_depth(now, guides), guides.normal, depth_gradient(guides.depth))
     total, sums = np.zeros(shape), np.zeros((len(coarse), *shape, 6))
     for offset, h in SPLINE:  # of odd coordinates the two beside have half the weight each, of even ones one has all
         y, x, _ = shifted(offset, shape)
@@ -189,7 +194,7 @@ def not_negative(color: Array) -> Array:
 
 def update(now: Stages, guides: Guides, settings: Kalman) -> dict[str, Array]:
     """The prediction, corrected by what has changed, blended with new light by the Kalman gain."""
-    known = now["known_depth"] > 0
+    known = known_depth(now, guides) > 0
     changed = np.where(known[..., None], correction(now, guides, settings), 0)
     color, (residual, doubt, spread) = changed[..., :3], np.moveaxis(changed[..., 3:], -1, 0)
     change = luminance(color)
@@ -204,15 +209,16 @@ def update(now: Stages, guides: Guides, settings: Kalman) -> dict[str, Array]:
     corrected = not_negative(now["predicted"] + color)
     phi, tone = np.sqrt(luminance(sample)), now["predicted_tone"] + residual
     off = luminance(sample) - luminance(corrected)
-    fresh = guides.hit.astype(np.float64)
+    sample_variance = np.where(known, (1 - gain) * (now["predicted_spread"] + gain * off**2), 0)
+    inverse_count = np.where(known, gain**2 + (1 - gain) ** 2 * count, guides.hit)
     return {
         "accumulated": np.where(known[..., None], corrected + gain[..., None] * (sample - corrected), sample),
-        "sample_variance": np.where(known, (1 - gain) * (now["predicted_spread"] + gain * off**2), 0),
-        "inverse_count": np.where(known, gain**2 + (1 - gain) ** 2 * count, fresh),
+        "expected_variance": inverse_count * (sample_variance + np.where(known, inverse_count * spread, 0)),
+        "sample_variance": sample_variance,
+        "inverse_count": inverse_count,
         "tone": np.where(known, tone + gain * (phi - tone), phi),
         "residual": np.where(known, (1 - gain) * (now["innovation_residual"] - residual), 0),
         "expected_luminance": np.where(known, np.maximum(now["predicted_luminance"] + change, 0), UNKNOWN),
-        "expected_spread": np.where(known, spread, 0),
     }
 
 
@@ -226,18 +232,18 @@ def moments(values: Array, weights: Sequence[tuple[Offset, Array]]) -> tuple[Arr
 
 
 def guidance(now: Stages, guides: Guides, settings: Kalman) -> dict[str, Array]:
-    """The variance of the mean, and the luminance by which the levels tell light apart."""
+    """The luminance by which the levels tell light apart, and the variance where history is short."""
     own = luminance(now["accumulated"])
     facets = Facets(guides.depth, guides.normal, depth_gradient(guides.depth))
     weights = {offset: facet_weight(facets, offset, change_tolerance(settings)) for offset in square(3)}
     smooth, _ = moments(own, [((dx, dy), GAUSSIAN[dx] * GAUSSIAN[dy] * weights[dx, dy]) for dx, dy in square(1)])
     alike = [(offset, w * same_albedo(guides, offset, settings.albedo_threshold)) for offset, w in weights.items()]
     _, spatial = moments(own, alike)
-    past, count = now["expected_luminance"], now["inverse_count"]
+    past = now["expected_luminance"]
     guess = np.where(past < 0, smooth, past)
-    over_time = count * (now["sample_variance"] + count * now["expected_spread"])
+    short = guides.hit & (now["inverse_count"] > SHORT_HISTORY)
     return {
-        "variance": np.where(guides.hit & (count > SHORT_HISTORY), SHARE_OF_VARIANCE * spatial, over_time),
+        "variance": np.where(short, SHARE_OF_VARIANCE * spatial, now["expected_variance"]),
         "guidance_1": np.where(guides.hit, smooth + guess - own, 0),
         "guidance": np.where(guides.hit, guess, 0),
     }

@@ -11,7 +11,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from svgf_cl import Denoiser, Frame, Kalman
-from svgf_cl.oracle.kalman import Oracle
+from svgf_cl.oracle.kalman import NOTHING_KNOWN, Oracle
 from tests import denoising
 from tests.frames import SHAPE, SPLIT, changing_sequence, noise, wall
 from tests.oracle import KALMAN_CASES, KALMAN_TOLERANCES, assert_kalman_follows_oracle, kalman_kind, measured
@@ -37,23 +37,30 @@ def changed() -> Denoiser:
         return feed(*case.frames()[:3])[1]
 
 
+def known(den: Denoiser) -> np.ndarray:
+    """Where something is known of the light."""
+    return den.stage("innovation_residual")[0] < NOTHING_KNOWN
+
+
 def test_cases_both_keep_and_lose_history() -> None:
-    assert 0.3 < np.mean(changed().stage("known_depth") > 0) < 0.9
+    assert 0.3 < np.mean(known(changed())) < 0.9
 
 
 def test_cases_find_that_light_has_changed_where_it_has() -> None:
     den = changed()
-    doubted, known = den.stage("correction_doubt")[0] > 0, den.stage("facet_depth") > 0
-    left = np.indices(known.shape)[1] < known.shape[1] // 2
-    assert np.mean(doubted[known & left]) > 0.5
-    assert np.mean(doubted[known & ~left]) < 0.2
+    doubted, tested = den.stage("correction_doubt")[0] > 0, den.stage("facet_depth") > 0
+    left = np.indices(tested.shape)[1] < tested.shape[1] // 2
+    assert np.mean(doubted[tested & left]) > 0.5
+    assert np.mean(doubted[tested & ~left]) < 0.2
 
 
 def test_cases_test_poles_directly() -> None:
     """No pixel of even coordinates shows them: what they know of a variance over space is their own."""
     den = changed()
-    known, spread = den.stage("known_depth")[:, 3::6] > 0, den.stage("expected_spread")[0][:, 3::6]
-    assert np.mean(spread[known] > 0) > 0.5
+    names = ("expected_variance", "inverse_count", "sample_variance")
+    variance, count, of_sample = (den.stage(name)[0] for name in names)
+    poles = known(den) & (np.indices(SHAPE)[1] % 6 == 3)
+    assert np.mean(variance[poles] > 1.01 * (count * of_sample)[poles]) > 0.5
 
 
 # Root-mean-square error over all pixels, relative to the picture's mean; about three times what was measured.
@@ -136,7 +143,7 @@ def test_one_bright_pixel_is_no_change_of_light() -> None:
 )
 def test_another_surface_has_no_history(change: dict[str, Any]) -> None:
     _, den = feed(wall(), wall(), wall(color=noise(), **change))
-    assert_array_equal(den.stage("known_depth"), 0)
+    assert not known(den).any()
     assert_array_equal(den.stage("inverse_count"), 1)
     assert_array_equal(den.stage("accumulated"), den.stage("demodulated"))
     assert_array_equal(den.stage("expected_luminance"), -1)
@@ -144,7 +151,7 @@ def test_another_surface_has_no_history(change: dict[str, Any]) -> None:
 
 def test_miss_has_no_state_and_guides_nothing() -> None:
     _, den = feed(*[wall(color=noise(), depth=np.inf)] * 3)
-    for name in ("inverse_count", "sample_variance", "known_depth", "guidance", "guidance_1", "variance"):
+    for name in ("inverse_count", "sample_variance", "guidance", "guidance_1", "variance"):
         assert_array_equal(den.stage(name), 0)
 
 

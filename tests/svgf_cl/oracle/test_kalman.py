@@ -19,7 +19,7 @@ def of_noise() -> dict[str, np.ndarray]:
     """The passes of the test over residuals that are white noise of variance 1, on a wall: 64 signals of it."""
     guides = guides_of(wall(PLANE))
     noise = np.random.default_rng(0).standard_normal((64, *PLANE))
-    now = {"known_depth": guides.depth, "innovation": np.zeros((*noise.shape, 3)), "innovation_residual": noise}
+    now = {"innovation": np.zeros((*noise.shape, 3)), "innovation_residual": noise}
     now |= innovation_mean(now, guides, Kalman())
     for number in (2, 3, 4):
         now |= named(f"change_{number}", *coarser_mean(now, number, Kalman()))
