@@ -53,12 +53,9 @@ INLINE Means divided(Means m) {
     return m;
 }
 
-// log2 of the spline (1/2, 1, 1/2) in both directions.
-INLINE float log2_spline(int dx, int dy) { return 0.0f - (float)(dx != 0) - (float)(dy != 0); }
-
 // Where the exponential has levelled off nothing is left: even so faint, the square of light of 1e10 would show.
-INLINE floatv tap_share(Facet f, int dx, int dy, float log2_h, floatv z, const floatv *normal) {
-    const floatv w = weight(facet_exponent(f, depth_scale(f, dx, dy), log2_h, z, normal));
+INLINE floatv tap_share(Facet f, floatv scale, float log2_h, floatv z, const floatv *normal) {
+    const floatv w = weight(facet_exponent(f, scale, log2_h, z, normal));
     return where((z > 0.0f) & (w > FAINTEST), w, (floatv)(0.0f));
 }
 
@@ -145,7 +142,7 @@ KERNEL innovation_mean(const int4 size, const int4 coarse_size, const float sigm
             floatv n[3];
             UNROLLED_FOR(k, 3) n[k] = there[k].side[dx];
             const floatv depth_there = dy ? below.side[dx] : z.side[dx];
-            w[dx] = (dx == 0 && dy == 0) ? (floatv)(1.0f) : tap_share(facet, dx, dy, 0.0f, depth_there, n);
+            w[dx] = (dx == 0 && dy == 0) ? (floatv)(1.0f) : tap_share(facet, depth_scale(facet, dx, dy), 0.0f, depth_there, n);
             w[dx] = where(known & is_known(residual[0][dy].side[dx]), w[dx], (floatv)(0.0f));
             sum.weight += w[dx];
             sum.share += w[dx] * w[dx];
@@ -173,6 +170,18 @@ INLINE void load_facet_normals(const int4 size, int i, __global const float *fac
     UNROLLED_FOR(k, 3) normal[k] = load(PLANE(size, facets, FACETS_NORMAL, 0, k) + i);
 }
 
+INLINE void add_means(Means *sum, floatv w, const int4 size, int tap, __global const float *finer) {
+    sum->weight += w;
+    sum->share += w * w * load(SHARED_PLANE(size, finer, CHANGE_SHARE) + tap);
+    UNROLLED_FOR(s, SIGNALS) {
+        Mean *m = &sum->of[s];
+        UNROLLED_FOR(k, 3) m->color[k] += w * load(PLANE(size, finer, CHANGE_COLOR, s, k) + tap);
+        m->square += w * load(PLANE(size, finer, CHANGE_SQUARE, s, 0) + tap);
+        m->residual += w * load(PLANE(size, finer, CHANGE_RESIDUAL, s, 0) + tap);
+        m->residual_square += w * load(PLANE(size, finer, CHANGE_RESIDUAL_SQUARE, s, 0) + tap);
+    }
+}
+
 // One of the later passes: mean over taps `step` of these pixels apart.
 INLINE Means mean_over(const int4 size, int here, int step, float sigma_depth, float sigma_normal, float slope_floor,
                        __global const float *facets, __global const float *finer) {
@@ -184,26 +193,25 @@ INLINE Means mean_over(const int4 size, int here, int step, float sigma_depth, f
     floatv normal[3];
     load_facet_normals(size, here, facets, normal);
     const Facet facet = facet_of(own, normal, g, 2.0f * (float)step, sigma_depth, sigma_normal, slope_floor);
-    Means sum = no_means();
-    for (int dy = -1; dy <= 1; ++dy) {
+    Means sum = load_means(size, here, finer);
+#pragma unroll
+    for (int dy = 0; dy <= 1; ++dy) {
 #pragma unroll
         for (int dx = -1; dx <= 1; ++dx) {
-            const int tap = here + step * (dy * size.z + dx);
-            floatv there[3];
-            load_facet_normals(size, tap, facets, there);
-            floatv w = tap_share(facet, dx, dy, log2_spline(dx, dy), load(depth + tap), there);
-            w = where(own > 0.0f, w, (floatv)(0.0f));
-            sum.weight += w;
-            sum.share += w * w * load(SHARED_PLANE(size, finer, CHANGE_SHARE) + tap);
-            UNROLLED_FOR(s, SIGNALS) {
-                Mean *m = &sum.of[s];
-                UNROLLED_FOR(k, 3) m->color[k] += w * load(PLANE(size, finer, CHANGE_COLOR, s, k) + tap);
-                m->square += w * load(PLANE(size, finer, CHANGE_SQUARE, s, 0) + tap);
-                m->residual += w * load(PLANE(size, finer, CHANGE_RESIDUAL, s, 0) + tap);
-                m->residual_square += w * load(PLANE(size, finer, CHANGE_RESIDUAL_SQUARE, s, 0) + tap);
+            if (dy == 0 && dx <= 0) continue;  // the other half of each pair, and the centre, whose weight is 1
+            const floatv scale = depth_scale(facet, dx, dy);
+            const float log2_h = dx && dy ? -2.0f : -1.0f;  // of the spline (1/2, 1, 1/2) in both directions
+            const int offset = step * (dy * size.z + dx);
+            UNROLLED_FOR(side, 2) {
+                const int tap = side ? here - offset : here + offset;
+                floatv there[3];
+                load_facet_normals(size, tap, facets, there);
+                const floatv w = tap_share(facet, scale, log2_h, load(depth + tap), there);
+                add_means(&sum, w, size, tap, finer);
             }
         }
     }
+    sum.weight = where(own > 0.0f, sum.weight, (floatv)(0.0f));
     return divided(sum);
 }
 

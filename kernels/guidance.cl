@@ -12,7 +12,6 @@
 #define SHORT_HISTORY 0.5f      // of W: from fewer than two samples
 #define SHARE_OF_VARIANCE 0.5f  // of that over space: some of it is detail
 #define REACH 3                 // 7x7 taps
-#define GAUSS(d) ((d) ? 0.25f : 0.5f)
 
 typedef struct {
     floatv weight, first[SIGNALS], second[SIGNALS];  // sums of w, w (l - l(p)), w (l - l(p))^2
@@ -53,25 +52,28 @@ KERNEL guidance(const int4 size, const float sigma_depth, const float sigma_norm
     __global const float *depth = SHARED_PLANE(size, guide, GUIDE_DEPTH);
     const intv hit = load(depth + here) > 0.0f;
 
-    floatv own[SIGNALS], smooth[SIGNALS], total = (floatv)(0.0f);
+    floatv own[SIGNALS], smooth[SIGNALS], total = (floatv)(1.0f);
     UNROLLED_FOR(s, SIGNALS) {
-        own[s] = load_light(PLANE(size, state, ILLUMINATION_COLOR, s, LIGHT_LUMINANCE) + here);
-        smooth[s] = (floatv)(0.0f);
+        own[s] = smooth[s] = load_light(PLANE(size, state, ILLUMINATION_COLOR, s, LIGHT_LUMINANCE) + here);
     }
 #pragma unroll
-    for (int dy = -1; dy <= 1; ++dy) {
+    for (int dy = 0; dy <= 1; ++dy) {
 #pragma unroll
         for (int dx = -1; dx <= 1; ++dx) {
-            const int tap = here + dy * size.z + dx;
-            floatv normal[3];
-            load_normals(size, tap, guide, normal);
-            const floatv scale = depth_scale(surface.facet, dx, dy), z = load(depth + tap);
-            floatv w = GAUSS(dx) * GAUSS(dy) * weight(facet_exponent(surface.facet, scale, 0.0f, z, normal));
-            w = where(z > 0.0f, w, (floatv)(0.0f));
-            if (dx == 0 && dy == 0) w = (floatv)(0.25f);
-            total += w;
-            UNROLLED_FOR(s, SIGNALS) {
-                smooth[s] += w * load_light(PLANE(size, state, ILLUMINATION_COLOR, s, LIGHT_LUMINANCE) + tap);
+            if (dy == 0 && dx <= 0) continue;  // the other half of each pair, and the centre, whose weight is 1
+            const floatv scale = depth_scale(surface.facet, dx, dy);
+            const float log2_h = dx && dy ? -2.0f : -1.0f;
+            UNROLLED_FOR(side, 2) {
+                const int offset = dy * size.z + dx, tap = side ? here - offset : here + offset;
+                const floatv z = load(depth + tap);
+                floatv normal[3];
+                load_normals(size, tap, guide, normal);
+                floatv w = weight(facet_exponent(surface.facet, scale, log2_h, z, normal));
+                w = where(z > 0.0f, w, (floatv)(0.0f));
+                total += w;
+                UNROLLED_FOR(s, SIGNALS) {
+                    smooth[s] += w * load_light(PLANE(size, state, ILLUMINATION_COLOR, s, LIGHT_LUMINANCE) + tap);
+                }
             }
         }
     }
