@@ -142,7 +142,8 @@ KERNEL innovation_mean(const int4 size, const int4 coarse_size, const float sigm
             floatv n[3];
             UNROLLED_FOR(k, 3) n[k] = there[k].side[dx];
             const floatv depth_there = dy ? below.side[dx] : z.side[dx];
-            w[dx] = (dx == 0 && dy == 0) ? (floatv)(1.0f) : tap_share(facet, depth_scale(facet, dx, dy), 0.0f, depth_there, n);
+            w[dx] = (dx == 0 && dy == 0) ? (floatv)(1.0f)
+                                         : tap_share(facet, depth_scale(facet, dx, dy), 0.0f, depth_there, n);
             w[dx] = where(known & is_known(residual[0][dy].side[dx]), w[dx], (floatv)(0.0f));
             sum.weight += w[dx];
             sum.share += w[dx] * w[dx];
