@@ -123,7 +123,7 @@ def test_every_second_pixel_of_every_second_row_costs_a_quarter() -> None:
     assert mean.bytes == 4 * (facets + change + change) / 4  # facets, finer; change
     assert mean.flops == passes["coarser_mean 1"].operations / 4
     assert first.bytes == 4 * ((1 + 3) + (3 + 1) + (facets + change) / 4)  # depth, normal; innovation; both made
-    assert first.loads.bytes == 4 * ((4 + 2) + 4 * 3 + 4 * (1 + 3 + 1)) / 4  # a block of each; depth's slope
+    assert first.loads.bytes == 4 * ((4 + 2) + 4 * 3 + 4 * (3 + 1)) / 4  # a block of each; depth's slope
 
 
 def test_costs_scale() -> None:
