@@ -1,5 +1,5 @@
-"""Checks with clang every kernel in every way in which a filter compiles it, and with clang-format how kernels are
-written; needs no OpenCL device.
+"""Checks with clang every kernel for all that frames may supply, and with clang-format how kernels are written; needs
+no OpenCL device.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.signals import SPLITS, Inputs
 
 WIDTHS = (1, 4, 8, 16)
-# These say how something is done, not what there is: one value against another, and all at once, will do.
+# These and the width say how something is done, not what there is: one value against another, and all at once, will do.
 SETTINGS: tuple[dict[str, Any], ...] = (
     {"precision": "precise", "taps": "5x5"},
     {"precision": "fast", "taps": "5x5", "half_history": True},
@@ -48,11 +48,12 @@ def inputs() -> Iterator[Inputs]:
 
 
 def jobs() -> list[Job]:
-    """Every source of every filter with all the macros that it may be compiled with, each once."""
+    """Every source of every filter with the macros of all that frames may supply, at one width each by turns."""
     found: dict[Job, None] = {}
     kinds: list[Callable[..., Filter]] = list(FILTERS.values())
     filters = [kind(taa=taa, **chosen) for kind in kinds for taa in (False, True) for chosen in SETTINGS]
-    for chosen, supplied, width in itertools.product(filters, inputs(), WIDTHS):
+    for (row, chosen), (column, supplied) in itertools.product(enumerate(filters), enumerate(inputs())):
+        width = WIDTHS[(row + column) % len(WIDTHS)]  # every width meets every setting, and every input
         pipeline = chosen.pipeline(supplied)
         for source in dict.fromkeys(entry.source for entry in pipeline.passes):
             options = programs.options_of(source, {"VW": width, **pipeline.defines})
