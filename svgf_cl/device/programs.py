@@ -38,6 +38,7 @@ HEADERS = (
 MORE_HEADERS: Mapping[str, tuple[str, ...]] = {
     "temporal": ("reprojection.clh",),
     "predict": ("reprojection.clh",),
+    "taa": ("reprojection.clh",),
     "modulate": ("divisor.clh",),
     "confidence": ("divisor.clh",),
     "change": ("significance.clh",),

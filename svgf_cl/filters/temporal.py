@@ -5,7 +5,6 @@ Equations: docs/algorithm.md, sections 1, 2, 5 and 6.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from svgf_cl.filters import operations
@@ -15,6 +14,8 @@ from svgf_cl.filters.pipeline import OUT, Access, Life, Pass, Quantity, Resource
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.filters.taps import CROSS, HERE, footprint, grid
 from svgf_cl.settings import number, switch
+
+UNKNOWN = -1e30  # in the history of TAA before the first frame: far below any light, and yet 0 times it is 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,6 +66,12 @@ class TemporalFilter(Filter):
         unit="share of a frame",
         reason="Share of the new frame in the antialiased picture. 0.2: on the moving demo 0.8 dB better than the "
         "usual 0.1, for each resampling of the history softens it; less suits a still camera.",
+    )
+    pixel_filter: float = number(
+        0.0,
+        (0.0, 0.25),
+        unit="share of a pixel",
+        reason="x",
     )
     half_guides: bool = switch(
         False,
@@ -180,12 +187,12 @@ class TemporalFilter(Filter):
 
     def taa_pass(self, inputs: Inputs, picture: Resource) -> Pass:
         """Temporal antialiasing; NaN in its history is no colour."""
-        color = Quantity("color", 3, stage="antialiased", unknown=math.nan)
+        color = Quantity("color", 3, stage="antialiased", unknown=UNKNOWN)
         antialiased = Resource("antialiased", "picture", (color,), Life.PAIR)
         return Pass(
             "taa",
             "taa",
-            scalars={"alpha_taa": self.alpha_taa},
+            scalars={"alpha_taa": self.alpha_taa, "pixel_filter": self.pixel_filter},
             reads=(
                 user("motion", channels=2),
                 access(self.guide(inputs), taps={"depth": grid(1)}),
