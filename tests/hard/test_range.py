@@ -50,7 +50,7 @@ class TestDimBesideBright:
 
     @of_linear
     def test_each_tile_keeps_its_own_light(self, variant: Variant, frames: list[Frame], light: np.ndarray) -> None:
-        *_, last = variant.linear.pictures(frames)
+        *_, last = variant.pictures(frames)
         held = (light > 100 * variant.least) & (light < variant.greatest) & np.ones(3, bool)
         assert_allclose(last[held], np.broadcast_to(light, last.shape)[held], rtol=0.1)
 
@@ -60,8 +60,8 @@ class TestDimBesideBright:
 def test_exposure_scales_the_picture_and_nothing_else(variant: Variant, scale: float) -> None:
     rng = np.random.default_rng(4)
     lights = [rng.exponential(0.5, (*SHAPE, 3)) for _ in range(5)]
-    once = variant.linear.pictures([variant.wall(light) for light in lights])
-    scaled = variant.linear.pictures([variant.wall(scale * light) for light in lights])
+    once = variant.pictures([variant.wall(light) for light in lights])
+    scaled = variant.pictures([variant.wall(scale * light) for light in lights])
     for got, expected in zip(scaled, once, strict=True):
         assert variant.errors(got, scale * expected).max() <= variant.error
 

@@ -29,7 +29,7 @@ class TestSky:
     @pytest.mark.parametrize("miss", [{"depth": np.inf}, {"depth": 0}, {"depth": 3e38}, {"normal": 0}], ids=str)
     @of_linear
     def test_passes_through(self, variant: Variant, light: np.ndarray, miss: dict) -> None:
-        for picture in variant.linear.pictures([variant.wall(light, **miss)] * 3):
+        for picture in variant.pictures([variant.wall(light, **miss)] * 3):
             assert variant.errors(picture, light).max() <= 4 * variant.rounding
 
     @pytest.mark.parametrize("sky", [1e4, 1e10])
@@ -50,7 +50,7 @@ class TestSky:
     @of_linear
     def test_is_left_alone_by_the_ground(self, variant: Variant, light: np.ndarray) -> None:
         lights = np.where(ABOVE[..., None], light, 1e10)
-        for picture in variant.linear.pictures([variant.wall(lights, depth=np.where(ABOVE, np.inf, 4.0))] * 3):
+        for picture in variant.pictures([variant.wall(lights, depth=np.where(ABOVE, np.inf, 4.0))] * 3):
             assert variant.errors(picture, light)[ABOVE].max() <= 4 * variant.rounding
 
 
