@@ -30,7 +30,7 @@ TOLERANCES = {
     "level": 1.5e-4,
     "level_variance": 2e-4,  # the same weights squared
     "antialiased": 1.5e-4,  # chroma is a small difference of large numbers
-    "resolved": 5e-5,  # inverting the tone map amplifies by 1 + Y
+    "resolved": 5e-5,
 }
 
 KALMAN_TOLERANCES = TOLERANCES | {
@@ -92,6 +92,7 @@ UNUSUAL = Settings(
     normal_threshold=0.8,
     taa=True,
     alpha_taa=0.3,
+    pixel_filter=0.15,
 )
 
 # PoCL compiles a 16-wide kernel for one signal in 8 s and any other in 1 s: the latter serve where there is a choice.
@@ -117,6 +118,7 @@ UNUSUAL_EAW = Eaw(
     normal_threshold=0.8,
     taa=True,
     alpha_taa=0.3,
+    pixel_filter=0.15,
 )
 EAW_CASES = {
     "EAW, plain": Case(partial(bumpy_sequence, PLAIN), Eaw(sigma_color=10)),
@@ -141,6 +143,7 @@ UNUSUAL_KALMAN = Kalman(
     standard_error=True,
     taa=True,
     alpha_taa=0.3,
+    pixel_filter=0.15,
 )
 KALMAN_CASES = {
     "Kalman, plain": Case(partial(changing_sequence, PLAIN), Kalman()),
