@@ -29,8 +29,8 @@ TOLERANCES = {
     "variance": 2e-4,  # 128 times the cosine, and exp of up to -80 amplify a rounding that often
     "level": 1.5e-4,
     "level_variance": 2e-4,  # the same weights squared
-    "antialiased": 1.5e-4,  # chroma is a small difference of large numbers
-    "resolved": 5e-5,
+    "antialiased": 1e-6,
+    "resolved": 5e-6,  # dim green under bright red and blue is a small difference
 }
 
 KALMAN_TOLERANCES = TOLERANCES | {

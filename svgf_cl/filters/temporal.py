@@ -61,16 +61,16 @@ class TemporalFilter(Filter):
         0.2,
         (0.0, 1.0),
         unit="share of a frame",
-        reason="Share of the new frame in the antialiased picture, which is a mean of radiance. 0.2: on the moving demo "
-        "0.8 dB better than the usual 0.1, for each resampling of the history softens it; less suits a still camera.",
+        reason="Share of the new frame in the antialiased picture, a mean of radiance. 0.2: on the moving demo 0.8 dB "
+        "better than the usual 0.1, for each resampling of the history softens it; less suits a still camera.",
     )
     pixel_filter: float = number(
         0.0,
         (0.0, 0.25),
         unit="share of a pixel",
-        reason="How much of each of its two neighbours in a row, and in a column, antialiasing takes a pixel of the new "
-        "frame to be; needs taa. 0: a pixel is the mean over its own square. Renderers that filter pixels spread what "
-        "they see over more than one: 0.15 suits Blender's default filter.",
+        reason="How much of each of its two neighbours in a row, and in a column, a pixel takes of the new frame in "
+        "antialiasing; needs taa. 0: a pixel is the mean over its own square. Renderers that filter pixels spread "
+        "what they see over more than one: 0.15 suits Blender's default filter.",
     )
     half_guides: bool = switch(
         False,

@@ -323,7 +323,7 @@ def taa(
         x, y, weight = catmull_rom_taps(position)
         rows, columns, inside = locate(x, y, shape)
         weight *= inside
-        seen = ((position >= -0.5) & (position < np.array(shape[::-1]) - 0.5)).all(axis=-1)
+        seen: Mask = np.all((position >= -0.5) & (position < np.array(shape[::-1]) - 0.5), axis=-1)
         past = np.einsum("thw,thwc->hwc", weight / np.where(seen, weight.sum(axis=0), 1), history[rows, columns])
         around = np.stack([current[shifted(offset, shape)[:2]] for offset in square(1)])
         past = np.clip(past, around.min(axis=0), around.max(axis=0))
