@@ -96,10 +96,12 @@ class Variant:
 PRECISE = {"rounding": 1e-6, "error": 1e-4, "outshone": 1e-3}
 HALVES = {"rounding": 1e-3, "error": 1e-1, "outshone": 1e-1, "greatest": 65504.0, "least": 2.0**-24}
 FAST = {"rounding": 1e-6, "error": 1e-1, "outshone": 2.0}
+# TAA clamps chroma between neighbours: beside a light 1e6 times as bright, chroma is known to that one's rounding only.
+OUTSHONE_CHROMA = {"outshone": 5e-2}
 
 VARIANTS = {
     "precise": Variant(Settings(), 1, **PRECISE),
-    "precise, two signals, TAA": Variant(Settings(taa=True), 2, **PRECISE),
+    "precise, two signals, TAA": Variant(Settings(taa=True), 2, **PRECISE | OUTSHONE_CHROMA),
     "fp16": Variant(Settings(half_guides=True, half_history=True), 1, **HALVES),
     "fp16, two signals, TAA": Variant(Settings(half_guides=True, half_history=True, taa=True), 2, **HALVES),
     "fast": Variant(Settings(precision="fast"), 1, **FAST),
