@@ -1,131 +1,203 @@
-// Temporal antialiasing after tone mapping, back to linear HDR at the end.
+// Temporal antialiasing in linear light.
 //
-//   t = YCoCg(picture) / (1 + Y(picture)),  h = clamp(history at p + motion, min 3x3 t, max 3x3 t)
-//   t := h + max(alpha, 1 / N) (t - h)
+//   c = YCoCg(picture);  n = sum over 3x3 of k(dx) k(dy) c,  k = (f, 1 - 2 f, f),  f = pixel_filter
+//   h = clamp(history at p + motion, min 3x3 c, max 3x3 c)
+//   t = h + max(alpha, 1 / N) (n - h)
 //
-// in   motion, guide: depth, moments: N, picture: modulated colour, history (YCoCg, tone mapped)
-// out  next history; out: the user's (H, W, 3) array, linear HDR
-// Schied et al. 2017, section 5; Karis, High-Quality Temporal Supersampling, 2014. Tone mapping comes first so that one
-// bright sample cannot outweigh its neighbours. It goes by Y, not by luminance: the clamp bounds Y, so the inverse
-// cannot make a firefly of two colours.
+// in   motion, guide: depth, moments: N, picture: modulated colour, history (YCoCg)
+// out  next history: t; out: RGB(t), not below 0, the user's (H, W, 3) array
+// Schied et al. 2017, section 5; Karis, High-Quality Temporal Supersampling, 2014. There is no tone map: what it makes
+// of a mean over time is darker than the mean.
 
-#define NEARER 0.9999f        // of a depth: what is not nearer by so much is as near
-#define LEAST_HEADROOM 1e-6f  // left of 1 below a tone: nothing brighter than 1e6 comes back
-#define HALF_PIXEL 0.5f       // from a pixel's centre, which has whole coordinates, to its edge
+#define NEARER 0.9999f   // of a depth: what is not nearer by so much is as near
+#define HALF_PIXEL 0.5f  // from a pixel's centre, which has whole coordinates, to its edge
+#define KNOWN (-1e20f)   // darker than any light: before the first frame all history is
+#define TAPS 4           // of Catmull and Rom's spline
 
 typedef struct {
-    floatv channel[3];  // Y, Co, Cg
-} Tone;
+    floatv channel[3];
+} YCoCg;
 
-// Of pixel `i` of the picture.
-INLINE Tone tone_map(const int4 size, int i, __global const float *picture) {
-    floatv c[3];
-    UNROLLED_FOR(k, 3) c[k] = load(PLANE(size, picture, PICTURE_COLOR, 0, k) + i);
-    Tone t;
-    t.channel[0] = 0.25f * c[0] + 0.5f * c[1] + 0.25f * c[2];
-    t.channel[1] = 0.5f * c[0] - 0.5f * c[2];
-    t.channel[2] = -0.25f * c[0] + 0.5f * c[1] - 0.25f * c[2];
-    const floatv scale = 1.0f / (1.0f + t.channel[0]);
-    UNROLLED_FOR(k, 3) t.channel[k] *= scale;
-    return t;
+INLINE YCoCg ycocg(floatv r, floatv g, floatv b) {
+    const floatv half_green = 0.5f * g, rest = 0.25f * (r + b);
+    YCoCg c;
+    c.channel[0] = half_green + rest;
+    c.channel[1] = 0.5f * (r - b);
+    c.channel[2] = half_green - rest;
+    return c;
 }
 
-// Weights of the four taps around a fraction f; the interpolation keeps edges sharp that a bilinear one would soften
-// a little more in every frame.
-INLINE void catmull_rom(floatv f, floatv *w) {
-    w[0] = f * (-0.5f + f * (1.0f - 0.5f * f));
-    w[1] = 1.0f + f * f * (-2.5f + 1.5f * f);
-    w[2] = f * (0.5f + f * (2.0f - 1.5f * f));
-    w[3] = f * f * (-0.5f + 0.5f * f);
-}
-
+// Motion, and the share of the newest frame in the history: 1 / N, or 0 where nothing was hit.
 typedef struct {
-    intv column, row;
-} Position;
+    floatv x, y, newest;
+} Past;
 
-// The nearest surface in the 3x3 neighbourhood: a pixel beside an edge moves with the edge; with its own motion it
-// would fetch, and keep, what the edge covered a frame ago. Nearly the same depth is the same: rounding shall not
-// choose between the pixels of a wall.
-INLINE Position foremost(const int4 size, int x, int y, __global const float *depth) {
-    const int here = at(size, x, y);
-    const floatv own = load(depth + here);
-    floatv limit = where(own > 0.0f, NEARER * own, (floatv)(INFINITY));
-    Position p;
-    p.column = x + LANES;
-    p.row = (intv)(y);
-    for (int dy = -1; dy <= 1; ++dy) {
-        for (int dx = -1; dx <= 1; ++dx) {
-            const floatv z = load(depth + here + dy * size.z + dx);  // 0 outside the image
-            const intv nearer = (z > 0.0f) & (z < limit);
-            limit = where(nearer, NEARER * z, limit);
-            p.column = select(p.column, x + dx + LANES, nearer);
-            p.row = select(p.row, (intv)(y + dy), nearer);
-        }
-    }
-    p.column = min(p.column, (intv)(size.x - 1));
-    return p;
-}
-
-// The share of the newest frame in the history at these places: 1 / N, or 0 where nothing was hit.
-INLINE floatv newest_share(const int4 size, intv places, __global const light_t *moments) {
+INLINE floatv newest_share(const int4 size, Places places, __global const light_t *moments) {
 #ifdef MOMENTS_LENGTH
-    const floatv frames = gather_light(SHARED_PLANE(size, moments, MOMENTS_LENGTH), places);
+    const floatv frames = fetch_light(SHARED_PLANE(size, moments, MOMENTS_LENGTH), places);
     return where(frames > 0.0f, 1.0f / frames, (floatv)(0.0f));
 #else
-    return min(gather_light(PLANE(size, moments, ILLUMINATION_INVERSE_COUNT, 0, 0), places), (floatv)(1.0f));
+    return min(fetch_light(PLANE(size, moments, ILLUMINATION_INVERSE_COUNT, 0, 0), places), (floatv)(1.0f));
 #endif
 }
 
-KERNEL taa(const int4 size, const float alpha_taa, __global const float *restrict motion,
+// Where the nearest surface in the 3x3 neighbourhood is, as a distance in a plane: a pixel beside an edge moves with
+// the edge; with its own motion it would fetch, and keep, what the edge covered a frame ago. Nearly the same depth is
+// the same: rounding shall not choose between the pixels of a wall.
+INLINE intv foremost(const int4 size, __global const float *depth) {
+    const floatv own = load(depth);
+    floatv limit = where(own > 0.0f, NEARER * own, (floatv)(INFINITY));
+    intv front = (intv)(0);
+    for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+            const floatv z = load(depth + dx + dy * size.z);  // 0 outside the image
+            const intv nearer = (z > 0.0f) & (z < limit);
+            limit = where(nearer, NEARER * z, limit);
+            front = select(front, (intv)(dx + dy * size.z), nearer);
+        }
+    }
+    return front;
+}
+
+// Of the surface at `front`, a pixel beside each at the most.
+INLINE Past past_of(const int4 size, int x, int y, intv front, __global const float *motion,
+                    __global const light_t *moments) {
+    const Places places = places_of(at(size, x, y) + LANES + front);
+    Past past;
+    past.newest = newest_share(size, places, moments);
+    if (places.adjacent) {
+        const int down = (FIRST(front) > 1) - (FIRST(front) < -1);
+        const Color m = load_motion(size, x + FIRST(front) - down * size.z, y + down, motion);
+        past.x = m.channel[0];
+        past.y = m.channel[1];
+    } else {
+        const intv none = (intv)(0), down = select(none, none + 1, front > 1) - select(none, none + 1, front < -1);
+        const intv column = min(x + LANES + front - down * size.z, (intv)(size.x - 1));
+        const intv i = (column + (y + down) * size.x) * MOTION;
+        past.x = gather(motion, i);
+        past.y = gather(motion, i + 1);
+    }
+    return past;
+}
+
+// Catmull and Rom's weights of the taps around a fraction f behind pixel `first` of `count`; those outside count
+// nothing. Bilinear weights would soften edges a little more in every frame.
+INLINE void catmull_rom(floatv f, intv first, int count, floatv *w) {
+    const floatv outside = (floatv)(0.0f);
+    w[0] = where(first > 0, f * (-0.5f + f * (1.0f - 0.5f * f)), outside);
+    w[1] = where(first >= 0, 1.0f + f * f * (-2.5f + 1.5f * f), outside);
+    w[2] = where(first < count - 1, f * (0.5f + f * (2.0f - 1.5f * f)), outside);
+    w[3] = where(first < count - 2, f * f * (-0.5f + 0.5f * f), outside);
+    const floatv scale = 1.0f / (w[0] + w[1] + w[2] + w[3]);  // of at least a half, half a pixel outside the image
+    UNROLLED_FOR(i, TAPS) w[i] *= scale;
+}
+
+// Of the taps around a place in the history.
+INLINE YCoCg weighted(const int4 size, const floatv *across, const floatv *down, __global const float *place) {
+    YCoCg sum;
+    UNROLLED_FOR(k, 3) {
+        sum.channel[k] = (floatv)(0.0f);
+        UNROLLED_FOR(j, TAPS) {
+            __global const float *row = PLANE(size, place, PICTURE_COLOR, 0, k) + (j - 1) * size.z - 1;
+            floatv along = (floatv)(0.0f);
+            UNROLLED_FOR(i, TAPS) along += across[i] * load(row + i);
+            sum.channel[k] += down[j] * along;
+        }
+    }
+    return sum;
+}
+
+// History at p + (mx, my) where that is `seen`.
+INLINE YCoCg read_history(const int4 size, int x, int y, intv seen, floatv mx, floatv my,
+                          __global const float *history) {
+    const intv whole_x = to_int(floor(mx)), whole_y = to_int(floor(my)), shift = whole_x + whole_y * size.z;
+    const floatv fx = mx - floor(mx), fy = my - floor(my);
+    const int here = at(size, x, y);
+    YCoCg h;
+    if (!any_lane((fx > 0.0f) | (fy > 0.0f))) {  // one tap has all the weight
+        const Places places = places_of(here + LANES + shift);
+        UNROLLED_FOR(k, 3) h.channel[k] = fetch(PLANE(size, history, PICTURE_COLOR, 0, k), places);
+        return h;
+    }
+    floatv across[TAPS], down[TAPS];
+    catmull_rom(fx, x + LANES + whole_x, size.x, across);
+    catmull_rom(fy, y + whole_y, size.y, down);
+    UNROLLED_FOR(k, 3) h.channel[k] = (floatv)(0.0f);
+    // Motion is smooth nearly everywhere: a vector has one shift or two, and all lanes that share it load side by side.
+    while (any_lane(seen)) {
+        const int next = GREATEST(select((intv)(INT_MIN), shift, seen));
+        const YCoCg there = weighted(size, across, down, history + here + next);
+        UNROLLED_FOR(k, 3) h.channel[k] = where(shift == next, there.channel[k], h.channel[k]);
+        seen &= shift != next;
+    }
+    return h;
+}
+
+// Of the pixels at `picture`.
+INLINE YCoCg load_ycocg(const int4 size, __global const float *picture) {
+    floatv c[3];
+    UNROLLED_FOR(k, 3) c[k] = load(PLANE(size, picture, PICTURE_COLOR, 0, k));
+    return ycocg(c[0], c[1], c[2]);
+}
+
+// Least and greatest in the 3x3 neighbourhood; a tap outside the image gives way to its neighbour inside.
+INLINE void extent(const int4 size, int x, int y, __global const float *picture, YCoCg *low, YCoCg *high) {
+    const intv leftmost = x + LANES == 0, rightmost = x + LANES == size.x - 1;
+    *low = *high = load_ycocg(size, picture + at(size, x, y));
+    UNROLLED_FOR(j, 3) {
+        __global const float *p = picture + at(size, x, clamp(y + j - 1, 0, size.y - 1));
+        const YCoCg middle = load_ycocg(size, p), left = load_ycocg(size, p - 1), right = load_ycocg(size, p + 1);
+        UNROLLED_FOR(k, 3) {
+            const floatv m = middle.channel[k];
+            const floatv l = where(leftmost, m, left.channel[k]), r = where(rightmost, m, right.channel[k]);
+            low->channel[k] = min(min(low->channel[k], m), min(l, r));
+            high->channel[k] = max(max(high->channel[k], m), max(l, r));
+        }
+    }
+}
+
+// The 3x3 neighbourhood's mean; a tap outside the image counts nothing.
+INLINE YCoCg filtered(const int4 size, int x, int y, float pixel_filter, __global const float *picture) {
+    const float middle = 1.0f - 2.0f * pixel_filter;
+    const floatv left = where(x + LANES > 0, (floatv)(pixel_filter), (floatv)(0.0f));
+    const floatv right = where(x + LANES < size.x - 1, (floatv)(pixel_filter), (floatv)(0.0f));
+    const float down[3] = {y > 0 ? pixel_filter : 0.0f, middle, y < size.y - 1 ? pixel_filter : 0.0f};
+    const floatv scale = 1.0f / ((left + middle + right) * (down[0] + middle + down[2]));
+    floatv c[3];
+    UNROLLED_FOR(k, 3) {
+        c[k] = (floatv)(0.0f);
+        UNROLLED_FOR(j, 3) {
+            __global const float *p = PLANE(size, picture, PICTURE_COLOR, 0, k) + at(size, x, y + j - 1);
+            c[k] += down[j] * (left * load(p - 1) + middle * load(p) + right * load(p + 1));
+        }
+        c[k] *= scale;
+    }
+    return ycocg(c[0], c[1], c[2]);
+}
+
+KERNEL taa(const int4 size, const float alpha_taa, const float pixel_filter, __global const float *restrict motion,
            __global const float *restrict guide, __global const light_t *restrict moments,
            __global const float *restrict picture, __global const float *restrict history,
            __global float *restrict next_history, __global float *restrict out) {
     const int x = first_column(), y = row();
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
-    const Position front = foremost(size, x, y, SHARED_PLANE(size, guide, GUIDE_DEPTH));
-    const intv m = (front.column + front.row * size.x) * MOTION;
-    const floatv mx = gather(motion, m), my = gather(motion, m + 1);
-    const floatv newest = newest_share(size, at_lanes(size, front.column, front.row), moments);
-    const floatv px = to_float(x + LANES) + mx, py = to_float((intv)(y)) + my;
+    const intv front = foremost(size, SHARED_PLANE(size, guide, GUIDE_DEPTH) + here);
+    const Past past = past_of(size, x, y, front, motion, moments);
+    const floatv px = to_float(x + LANES) + past.x, py = to_float((intv)(y)) + past.y;
     const float right = (float)size.x - HALF_PIXEL, bottom = (float)size.y - HALF_PIXEL;
     const intv seen = (px >= -HALF_PIXEL) & (px < right) & (py >= -HALF_PIXEL) & (py < bottom);  // false for NaN
+    const floatv mx = where(seen, past.x, (floatv)(0.0f)), my = where(seen, past.y, (floatv)(0.0f));
+    const YCoCg h = read_history(size, x, y, seen, mx, my, history);
 
-    const Tone now = tone_map(size, here, picture);
-    Tone low = now, high = now;
-    for (int dy = -1; dy <= 1; ++dy) {
-        if (y + dy < 0 || y + dy >= size.y) continue;
-        for (int dx = -1; dx <= 1; ++dx) {
-            const Tone t = tone_map(size, here + dy * size.z + dx, picture);
-            const intv inside = (x + dx + LANES >= 0) & (x + dx + LANES < size.x);
-            UNROLLED_FOR(k, 3) {
-                low.channel[k] = where(inside, min(low.channel[k], t.channel[k]), low.channel[k]);
-                high.channel[k] = where(inside, max(high.channel[k], t.channel[k]), high.channel[k]);
-            }
-        }
-    }
+    YCoCg low, high;
+    extent(size, x, y, picture, &low, &high);
+    YCoCg now = load_ycocg(size, picture + here);
+    if (pixel_filter > 0.0f) now = filtered(size, x, y, pixel_filter, picture);
 
-    const floatv sx = where(seen, mx, (floatv)(0.0f)), sy = where(seen, my, (floatv)(0.0f));
-    const intv left = x - 1 + LANES + to_int(floor(sx)), top = y - 1 + to_int(floor(sy));
-    floatv wx[4], wy[4];
-    catmull_rom(sx - floor(sx), wx);
-    catmull_rom(sy - floor(sy), wy);
-    Tone h;
-    UNROLLED_FOR(k, 3) h.channel[k] = (floatv)(0.0f);
-    UNROLLED_FOR(j, 4) {
-        UNROLLED_FOR(i, 4) {
-            const intv tx = within(0, size.x - 1, left + i), ty = within(0, size.y - 1, top + j);
-            const Places tap = places_of(at_lanes(size, tx, ty));
-            UNROLLED_FOR(k, 3) {
-                h.channel[k] += wx[i] * wy[j] * fetch(PLANE(size, history, PICTURE_COLOR, 0, k), tap);
-            }
-        }
-    }
-
-    // Before the first frame the history is NaN.
-    const floatv share = max((floatv)(alpha_taa), newest);
-    const floatv alpha = where(seen & isfinite(h.channel[0]), share, (floatv)(1.0f));
-    Tone t;
+    const intv known = seen & (h.channel[0] > KNOWN);
+    const floatv alpha = where(known, max((floatv)(alpha_taa), past.newest), (floatv)(1.0f));
+    YCoCg t;
     UNROLLED_FOR(k, 3) {
         const floatv kept = clamp(h.channel[k], low.channel[k], high.channel[k]);
         t.channel[k] = where(alpha < 1.0f, kept + alpha * (now.channel[k] - kept), now.channel[k]);
@@ -134,8 +206,7 @@ KERNEL taa(const int4 size, const float alpha_taa, __global const float *restric
     }
     const floatv base = t.channel[0] - t.channel[2];
     const floatv rgb[3] = {base + t.channel[1], t.channel[0] + t.channel[2], base - t.channel[1]};
-    const floatv scale = 1.0f / max(1.0f - t.channel[0], (floatv)(LEAST_HEADROOM));
     Color c;
-    UNROLLED_FOR(k, 3) c.channel[k] = max(rgb[k] * scale, (floatv)(0.0f));
+    UNROLLED_FOR(k, 3) c.channel[k] = max(rgb[k], (floatv)(0.0f));
     store_color(c, size, x, y, out);
 }

@@ -36,8 +36,9 @@ HEADERS = (
 )
 # What only some sources need: another would be compiled again for macros that it has no use for.
 MORE_HEADERS: Mapping[str, tuple[str, ...]] = {
-    "temporal": ("reprojection.clh",),
-    "predict": ("reprojection.clh", "innovation.clh"),
+    "temporal": ("motion.clh", "reprojection.clh"),
+    "predict": ("motion.clh", "reprojection.clh", "innovation.clh"),
+    "taa": ("motion.clh",),
     "modulate": ("divisor.clh",),
     "confidence": ("divisor.clh",),
     "change": ("innovation.clh", "significance.clh"),

@@ -126,10 +126,11 @@ def standard_error(inputs: Inputs) -> float:
     return len(inputs.signals) + 1 + (3 * (SAFE + 1 + 1) + 4 + DOT + 1 if inputs.divides_by_albedo else 0)
 
 
-def taa() -> float:
-    """Section 6: nearest neighbour, tone map, 4x4 taps of history, clamp, blend and back."""
-    tone = 8 + 2 + 3
+def taa(*, filters_pixels: bool) -> float:
+    """Section 6: nearest neighbour, YCoCg, 4x4 taps of history, clamp, blend and back; and the pixel filter's 3x3."""
+    ycocg = 3 + 4
     foremost = 9 * 2
     history = 2 * 16 + 16 * (1 + 2 * 3)
     extent = 8 * 2 * 3
-    return foremost + tone + history + extent + 3 * (2 + BLEND) + 4 + 3 + 5
+    pixel_filter = 9 * 2 * 3 if filters_pixels else 0
+    return foremost + ycocg + history + extent + pixel_filter + 3 * (2 + BLEND) + 4 + 3

@@ -5,9 +5,9 @@ Equations: docs/algorithm.md, sections 1, 2, 5 and 6.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
+from svgf_cl.errors import SettingsError
 from svgf_cl.filters import operations
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.formats import Format
@@ -15,6 +15,8 @@ from svgf_cl.filters.pipeline import OUT, Access, Life, Pass, Quantity, Resource
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.filters.taps import CROSS, HERE, footprint, grid
 from svgf_cl.settings import number, switch
+
+UNKNOWN = -1e30  # in TAA's history before the first frame: darker than any light, and yet 0 times it is 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,17 +56,21 @@ class TemporalFilter(Filter):
         "better than they came in, and most textures keep their neighbours. At 8 albedo does not count, as in the "
         "papers.",
     )
-    taa: bool = switch(
-        False,
-        reason="Temporal antialiasing after the filter; off, because a renderer often has its own. For radiance up to "
-        "about 1e4: brighter light loses precision, and nothing above 1e6 comes back.",
-    )
+    taa: bool = switch(False, reason="Temporal antialiasing after the filter; off, as a renderer often has its own.")
     alpha_taa: float = number(
         0.2,
         (0.0, 1.0),
         unit="share of a frame",
-        reason="Share of the new frame in the antialiased picture. 0.2: on the moving demo 0.8 dB better than the "
-        "usual 0.1, for each resampling of the history softens it; less suits a still camera.",
+        reason="Share of the new frame in the antialiased picture, a mean of radiance. 0.2: on the moving demo 0.8 dB "
+        "better than the usual 0.1, for each resampling of the history softens it; less suits a still camera.",
+    )
+    pixel_filter: float = number(
+        0.0,
+        (0.0, 0.25),
+        unit="share of a pixel",
+        reason="How much of each of its two neighbours in a row, and in a column, a pixel takes of the new frame in "
+        "antialiasing; needs taa. 0: a pixel is the mean over its own square. Renderers that filter pixels spread "
+        "what they see over more than one: 0.15 suits Blender's default filter.",
     )
     half_guides: bool = switch(
         False,
@@ -77,6 +83,13 @@ class TemporalFilter(Filter):
         "2^-12, of light that stands still up to 2^-11 / alpha_color (or 2^-6: an alpha below 1/32 counts as "
         "that), and illumination that saturates at 65504. Off: no faster on a CPU.",
     )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.pixel_filter and not self.taa:
+            raise SettingsError(
+                f"{type(self).__name__}.pixel_filter: expected 0 without taa, got {self.pixel_filter}; set taa too"
+            )
 
     @property
     def macros(self) -> dict[str, int]:
@@ -179,13 +192,13 @@ class TemporalFilter(Filter):
         return access(self.moments(inputs), taps={"length": HERE})
 
     def taa_pass(self, inputs: Inputs, picture: Resource) -> Pass:
-        """Temporal antialiasing; NaN in its history is no colour."""
-        color = Quantity("color", 3, stage="antialiased", unknown=math.nan)
+        """Temporal antialiasing."""
+        color = Quantity("color", 3, stage="antialiased", unknown=UNKNOWN)
         antialiased = Resource("antialiased", "picture", (color,), Life.PAIR)
         return Pass(
             "taa",
             "taa",
-            scalars={"alpha_taa": self.alpha_taa},
+            scalars={"alpha_taa": self.alpha_taa, "pixel_filter": self.pixel_filter},
             reads=(
                 user("motion", channels=2),
                 access(self.guide(inputs), taps={"depth": grid(1)}),
@@ -194,5 +207,5 @@ class TemporalFilter(Filter):
                 access(antialiased, "history", {"color": footprint(4)}, previous=True),
             ),
             writes=(access(antialiased, "next_history"), user(OUT)),
-            operations=operations.taa(),
+            operations=operations.taa(filters_pixels=self.pixel_filter > 0),
         )

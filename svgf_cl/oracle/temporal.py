@@ -44,7 +44,6 @@ NO_HISTORY = (-MOTION_MAX, -MOTION_MAX, 0.0)
 NEARER = float(np.float32(0.9999))
 HISTORY_WEIGHT = 0.01  # of the taps at the position itself, from which they are a history
 OTHERS_WEIGHT = 1 / 64  # of a tap of another albedo
-HEADROOM = 1e-6  # of a tone below 1
 LENGTH_MAX = {False: 1024, True: 32}
 YCOCG_OF_RGB = np.array(((1 / 4, 1 / 2, 1 / 4), (1 / 2, 0, -1 / 2), (-1 / 4, 1 / 2, -1 / 4)))
 RGB_OF_YCOCG = np.array(((1, 1, -1), (1, 0, 1), (1, -1, -1)))
@@ -286,6 +285,18 @@ def foremost(guides: Guides) -> tuple[Indices, Indices]:
     return rows, columns
 
 
+def pixel_filtered(image: Array, share: float) -> Array:
+    """Section 6: n, the mean over the 3x3 neighbourhood inside the image, (H, W, 3)."""
+    kernel = {-1: share, 0: 1 - 2 * share, 1: share}
+    total, weights = np.zeros_like(image), np.zeros(image.shape[:2])
+    for dx, dy in square(1):
+        y, x, inside = shifted((dx, dy), image.shape[:2])
+        weight = kernel[dx] * kernel[dy] * inside
+        total += weight[..., None] * image[y, x]
+        weights += weight
+    return total / weights[..., None]
+
+
 def taa(
     image: Array, guides: Guides, length: Array, history: Array | None, settings: TemporalFilter
 ) -> tuple[Array, Array]:
@@ -296,7 +307,7 @@ def taa(
     image : (H, W, 3), linear HDR.
     guides : Guides
     length : (H, W), N, of `Accumulated`.
-    history : (H, W, 3), tone-mapped YCoCg, or None on the first frame.
+    history : (H, W, 3), YCoCg, or None on the first frame.
 
     Returns
     -------
@@ -305,21 +316,20 @@ def taa(
     """
     shape = guides.depth.shape
     current = image @ YCOCG_OF_RGB.T
-    current = current / (1 + current[..., :1])
-    result = current
+    result = filtered = pixel_filtered(current, settings.pixel_filter)
     if history is not None:
         front = foremost(guides)
         position = reprojected(guides.motion[front])
         x, y, weight = catmull_rom_taps(position)
-        rows, columns, _ = locate(x, y, shape)
-        past = np.einsum("thw,thwc->hwc", weight, history[rows, columns])
+        rows, columns, inside = locate(x, y, shape)
+        weight *= inside
+        seen: Mask = np.all((position >= -0.5) & (position < np.array(shape[::-1]) - 0.5), axis=-1)
+        past = np.einsum("thw,thwc->hwc", weight / np.where(seen, weight.sum(axis=0), 1), history[rows, columns])
         around = np.stack([current[shifted(offset, shape)[:2]] for offset in square(1)])
         past = np.clip(past, around.min(axis=0), around.max(axis=0))
-        inside = ((position >= -0.5) & (position < np.array(shape[::-1]) - 0.5)).all(axis=-1, keepdims=True)
         alpha = np.maximum(settings.alpha_taa, np.where(length[front] > 0, 1 / np.maximum(length[front], 1), 0))
-        result = np.where(inside, past + alpha[..., None] * (current - past), current)
-    color = result @ RGB_OF_YCOCG.T
-    return np.maximum(color / np.maximum(1 - result[..., :1], HEADROOM), 0), result
+        result = np.where(seen[..., None], past + alpha[..., None] * (filtered - past), filtered)
+    return np.maximum(result @ RGB_OF_YCOCG.T, 0), result
 
 
 Stages = Mapping[str, Array]
@@ -394,8 +404,8 @@ class FilterOracle(ABC, Generic[Chosen]):
             return
         yield "modulate", {"modulated": image}
         before = past.stages["antialiased"] if past else None
-        resolved, tone = taa(now["modulated"], guides, self.length(now), before, settings)
-        yield "taa", {"antialiased": tone, "out": resolved}
+        resolved, antialiased = taa(now["modulated"], guides, self.length(now), before, settings)
+        yield "taa", {"antialiased": antialiased, "out": resolved}
 
     @abstractmethod
     def length(self, now: Stages) -> Array:

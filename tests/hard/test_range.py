@@ -14,8 +14,6 @@ from tests.hard.variants import Variant, on
 
 # Light of any strength goes through storage, weights and TAA, and each ends or rounds somewhere else: each once.
 variants = on("precise", "precise, two signals, TAA", "fp16", "fast")
-# Without TAA, and alike for every signal.
-of_linear = on("precise", "fp16", "fast")
 # Made safe as it comes in, before it is stored or weighed; each signal for itself.
 of_input = on("precise", "precise, two signals, TAA")
 
@@ -48,20 +46,20 @@ class TestDimBesideBright:
     def test_follows_the_oracle(self, variant: Variant, frames: list[Frame]) -> None:
         variant.assert_follows_oracle(frames)
 
-    @of_linear
+    @variants
     def test_each_tile_keeps_its_own_light(self, variant: Variant, frames: list[Frame], light: np.ndarray) -> None:
-        *_, last = variant.linear.pictures(frames)
+        *_, last = variant.pictures(frames)
         held = (light > 100 * variant.least) & (light < variant.greatest) & np.ones(3, bool)
         assert_allclose(last[held], np.broadcast_to(light, last.shape)[held], rtol=0.1)
 
 
 @pytest.mark.parametrize("scale", [2.0**-8, 2.0**8])
-@of_linear
+@variants
 def test_exposure_scales_the_picture_and_nothing_else(variant: Variant, scale: float) -> None:
     rng = np.random.default_rng(4)
     lights = [rng.exponential(0.5, (*SHAPE, 3)) for _ in range(5)]
-    once = variant.linear.pictures([variant.wall(light) for light in lights])
-    scaled = variant.linear.pictures([variant.wall(scale * light) for light in lights])
+    once = variant.pictures([variant.wall(light) for light in lights])
+    scaled = variant.pictures([variant.wall(scale * light) for light in lights])
     for got, expected in zip(scaled, once, strict=True):
         assert variant.errors(got, scale * expected).max() <= variant.error
 

@@ -12,8 +12,6 @@ from tests.hard.variants import Variant, on
 
 # Normals are stored and weighed, in each way once; TAA, which takes in neighbours, must not take in the sky.
 variants = on("precise", "precise, two signals, TAA", "fp16", "fast")
-# Without TAA, and alike for every signal.
-of_linear = on("precise", "fp16", "fast")
 # The length of history is kept, and TAA and the signals share it.
 of_lengths = on("precise", "fp16")
 
@@ -27,9 +25,9 @@ class TestSky:
         return 10 ** np.random.default_rng(0).uniform(-2, 4, (*SHAPE, 3))
 
     @pytest.mark.parametrize("miss", [{"depth": np.inf}, {"depth": 0}, {"depth": 3e38}, {"normal": 0}], ids=str)
-    @of_linear
+    @variants
     def test_passes_through(self, variant: Variant, light: np.ndarray, miss: dict) -> None:
-        for picture in variant.linear.pictures([variant.wall(light, **miss)] * 3):
+        for picture in variant.pictures([variant.wall(light, **miss)] * 3):
             assert variant.errors(picture, light).max() <= 4 * variant.rounding
 
     @pytest.mark.parametrize("sky", [1e4, 1e10])
@@ -47,15 +45,15 @@ class TestSky:
         for got, expected in zip(variant.pictures(under(sky)), variant.pictures(under(0.0)), strict=True):
             assert_array_equal(got[ground], expected[ground])
 
-    @of_linear
+    @variants
     def test_is_left_alone_by_the_ground(self, variant: Variant, light: np.ndarray) -> None:
         lights = np.where(ABOVE[..., None], light, 1e10)
-        for picture in variant.linear.pictures([variant.wall(lights, depth=np.where(ABOVE, np.inf, 4.0))] * 3):
+        for picture in variant.pictures([variant.wall(lights, depth=np.where(ABOVE, np.inf, 4.0))] * 3):
             assert variant.errors(picture, light)[ABOVE].max() <= 4 * variant.rounding
 
 
 class TestNormals:
-    @of_linear
+    @variants
     def test_length_does_not_matter(self, variant: Variant) -> None:
         rng = np.random.default_rng(2)
         normal = FACING + rng.normal(0, 0.1, (*SHAPE, 3))

@@ -45,7 +45,6 @@ EXPECTED = {
     "CALIBRATION": (kalman.CALIBRATION,),
     "TINY": (kalman.LEAST_DIVISOR,),
     "NEARER": (temporal.NEARER,),
-    "LEAST_HEADROOM": (temporal.HEADROOM,),
 }
 
 

@@ -40,7 +40,7 @@ def test_the_docstring_tells_every_setting(kind: type[Settings] | type[Eaw]) -> 
 @every_number
 def test_ends_of_the_range_are_taken(name: str) -> None:
     for value in (RANGES[name].least, RANGES[name].greatest):
-        assert getattr(Settings(**{name: value}), name) == value
+        assert getattr(Settings(taa=True, **{name: value}), name) == value
 
 
 @every_number
@@ -86,6 +86,12 @@ def test_only_known_words_are_taken(name: str) -> None:
 def test_switches_are_bools(name: str, value: Any) -> None:
     with pytest.raises(SettingsError, match=rf"Settings\.{name}: expected True or False"):
         Settings(**{name: value})
+
+
+@every_filter
+def test_pixel_filter_needs_taa(kind: type[Settings] | type[Eaw]) -> None:
+    with pytest.raises(SettingsError, match=rf"{kind.__name__}\.pixel_filter: expected 0 without taa, got 0\.15; set"):
+        kind(pixel_filter=0.15)
 
 
 def test_errors_name_the_filter() -> None:
