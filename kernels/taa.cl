@@ -2,7 +2,7 @@
 //
 //   c = YCoCg(picture);  n = sum over 3x3 of k(dx) k(dy) c,  k = (f, 1 - 2 f, f),  f = pixel_filter
 //   h = clamp(history at p + motion, min 3x3 c, max 3x3 c)
-//   t = h + max(alpha, 1 / N) (n - h)
+//   t = h + max(alpha, 1 / max 3x3 N) (n - h)
 //
 // in   motion, guide: depth, moments: N, picture: modulated colour, history (YCoCg)
 // out  next history: t; out: RGB(t), not below 0, the user's (H, W, 3) array
@@ -27,18 +27,24 @@ INLINE YCoCg ycocg(floatv r, floatv g, floatv b) {
     return c;
 }
 
-// Motion, and the share of the newest frame in the history: 1 / N, or 0 where nothing was hit.
-typedef struct {
-    floatv x, y, newest;
-} Past;
-
-INLINE floatv newest_share(const int4 size, Places places, __global const light_t *moments) {
+// The share of the newest frame in the longest history of the 3x3 neighbourhood, and 0 where nothing was hit. What was
+// uncovered is new all over; beside an edge, rays that move within the pixel make a single pixel new again and again.
+INLINE floatv newest_share(const int4 size, int here, __global const light_t *moments) {
+    floatv least = (floatv)(INFINITY);
+    UNROLLED_FOR(j, 3) {
+        UNROLLED_FOR(i, 3) {
+            const int tap = here + (j - 1) * size.z + i - 1;
 #ifdef MOMENTS_LENGTH
-    const floatv frames = fetch_light(SHARED_PLANE(size, moments, MOMENTS_LENGTH), places);
-    return where(frames > 0.0f, 1.0f / frames, (floatv)(0.0f));
+            const floatv share =
+                1.0f / load_light(SHARED_PLANE(size, moments, MOMENTS_LENGTH) + tap);  // of 0: infinite
 #else
-    return min(fetch_light(PLANE(size, moments, ILLUMINATION_INVERSE_COUNT, 0, 0), places), (floatv)(1.0f));
+            const floatv inverse = load_light(PLANE(size, moments, ILLUMINATION_INVERSE_COUNT, 0, 0) + tap);
+            const floatv share = where(inverse > 0.0f, inverse, (floatv)(INFINITY));
 #endif
+            least = min(least, share);
+        }
+    }
+    return where(isfinite(least), min(least, (floatv)(1.0f)), (floatv)(0.0f));
 }
 
 // Where the nearest surface in the 3x3 neighbourhood is, as a distance in a plane: a pixel beside an edge moves with
@@ -60,24 +66,19 @@ INLINE intv foremost(const int4 size, __global const float *depth) {
 }
 
 // Of the surface at `front`, a pixel beside each at the most.
-INLINE Past past_of(const int4 size, int x, int y, intv front, __global const float *motion,
-                    __global const light_t *moments) {
-    const Places places = places_of(at(size, x, y) + LANES + front);
-    Past past;
-    past.newest = newest_share(size, places, moments);
-    if (places.adjacent) {
+INLINE Color motion_of(const int4 size, int x, int y, intv front, __global const float *motion) {
+    if (places_of(LANES + front).adjacent) {
         const int down = (FIRST(front) > 1) - (FIRST(front) < -1);
-        const Color m = load_motion(size, x + FIRST(front) - down * size.z, y + down, motion);
-        past.x = m.channel[0];
-        past.y = m.channel[1];
-    } else {
-        const intv none = (intv)(0), down = select(none, none + 1, front > 1) - select(none, none + 1, front < -1);
-        const intv column = min(x + LANES + front - down * size.z, (intv)(size.x - 1));
-        const intv i = (column + (y + down) * size.x) * MOTION;
-        past.x = gather(motion, i);
-        past.y = gather(motion, i + 1);
+        return load_motion(size, x + FIRST(front) - down * size.z, y + down, motion);
     }
-    return past;
+    const intv none = (intv)(0), down = select(none, none + 1, front > 1) - select(none, none + 1, front < -1);
+    const intv column = min(x + LANES + front - down * size.z, (intv)(size.x - 1));
+    const intv i = (column + (y + down) * size.x) * MOTION;
+    Color m;
+    m.channel[0] = gather(motion, i);
+    m.channel[1] = gather(motion, i + 1);
+    m.channel[2] = (floatv)(0.0f);
+    return m;
 }
 
 // Catmull and Rom's weights of the taps around a fraction f behind pixel `first` of `count`; those outside count
@@ -183,11 +184,11 @@ KERNEL taa(const int4 size, const float alpha_taa, const float pixel_filter, __g
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
     const intv front = foremost(size, SHARED_PLANE(size, guide, GUIDE_DEPTH) + here);
-    const Past past = past_of(size, x, y, front, motion, moments);
-    const floatv px = to_float(x + LANES) + past.x, py = to_float((intv)(y)) + past.y;
+    const Color m = motion_of(size, x, y, front, motion);
+    const floatv px = to_float(x + LANES) + m.channel[0], py = to_float((intv)(y)) + m.channel[1];
     const float right = (float)size.x - HALF_PIXEL, bottom = (float)size.y - HALF_PIXEL;
     const intv seen = (px >= -HALF_PIXEL) & (px < right) & (py >= -HALF_PIXEL) & (py < bottom);  // false for NaN
-    const floatv mx = where(seen, past.x, (floatv)(0.0f)), my = where(seen, past.y, (floatv)(0.0f));
+    const floatv mx = where(seen, m.channel[0], (floatv)(0.0f)), my = where(seen, m.channel[1], (floatv)(0.0f));
     const YCoCg h = read_history(size, x, y, seen, mx, my, history);
 
     YCoCg low, high;
@@ -196,7 +197,8 @@ KERNEL taa(const int4 size, const float alpha_taa, const float pixel_filter, __g
     if (pixel_filter > 0.0f) now = filtered(size, x, y, pixel_filter, picture);
 
     const intv known = seen & (h.channel[0] > KNOWN);
-    const floatv alpha = where(known, max((floatv)(alpha_taa), past.newest), (floatv)(1.0f));
+    const floatv share = max((floatv)(alpha_taa), newest_share(size, here, moments));
+    const floatv alpha = where(known, share, (floatv)(1.0f));
     YCoCg t;
     UNROLLED_FOR(k, 3) {
         const floatv kept = clamp(h.channel[k], low.channel[k], high.channel[k]);

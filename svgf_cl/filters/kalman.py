@@ -260,7 +260,7 @@ class Kalman(WaveletFilter):
 
     def age(self, inputs: Inputs) -> Access:
         """What antialiasing wants to know of the past: one over the number of samples that the history stands for."""
-        return access(self.state(inputs), "moments", {"inverse_count": HERE})
+        return access(self.state(inputs), "moments", {"inverse_count": grid(1)})
 
     def state(self, inputs: Inputs) -> Resource:
         """What is known of the light: its mean, the mean's variance, and what the next frame needs to go on."""

@@ -127,10 +127,10 @@ def standard_error(inputs: Inputs) -> float:
 
 
 def taa(*, filters_pixels: bool) -> float:
-    """Section 6: nearest neighbour, YCoCg, 4x4 taps of history, clamp, blend and back; and the pixel filter's 3x3."""
+    """Section 6: nearest neighbour, longest history, YCoCg, 4x4 taps, clamp, blend and back; the pixel filter's 3x3."""
     ycocg = 3 + 4
-    foremost = 9 * 2
+    foremost, longest = 9 * 2, 9 * 2
     history = 2 * 16 + 16 * (1 + 2 * 3)
     extent = 8 * 2 * 3
     pixel_filter = 9 * 2 * 3 if filters_pixels else 0
-    return foremost + ycocg + history + extent + pixel_filter + 3 * (2 + BLEND) + 4 + 3
+    return foremost + longest + ycocg + history + extent + pixel_filter + 3 * (2 + BLEND) + 4 + 3

@@ -189,7 +189,7 @@ class TemporalFilter(Filter):
 
     def age(self, inputs: Inputs) -> Access:
         """What antialiasing wants to know of the past: how long the history is."""
-        return access(self.moments(inputs), taps={"length": HERE})
+        return access(self.moments(inputs), taps={"length": grid(1)})
 
     def taa_pass(self, inputs: Inputs, picture: Resource) -> Pass:
         """Temporal antialiasing."""

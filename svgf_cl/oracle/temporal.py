@@ -327,7 +327,8 @@ def taa(
         past = np.einsum("thw,thwc->hwc", weight / np.where(seen, weight.sum(axis=0), 1), history[rows, columns])
         around = np.stack([current[shifted(offset, shape)[:2]] for offset in square(1)])
         past = np.clip(past, around.min(axis=0), around.max(axis=0))
-        alpha = np.maximum(settings.alpha_taa, np.where(length[front] > 0, 1 / np.maximum(length[front], 1), 0))
+        longest = np.max([length[shifted(offset, shape)[:2]] for offset in square(1)], axis=0)
+        alpha = np.maximum(settings.alpha_taa, np.where(longest > 0, 1 / np.maximum(longest, 1), 0))
         result = np.where(seen[..., None], past + alpha[..., None] * (filtered - past), filtered)
     return np.maximum(result @ RGB_OF_YCOCG.T, 0), result
 

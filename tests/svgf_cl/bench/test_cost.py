@@ -100,7 +100,7 @@ def test_history_lies_anywhere() -> None:
     temporal = loaded("temporal")
     assert temporal.offset == 4 * (2 + 4 * (6 + 3 + 3))  # slope; guide, colour and moments
     assert temporal.aligned == 4 * (3 + 6 + 2 + 3)  # motion, guide, slope, colour
-    assert loaded("taa").offset == 4 * (6 * (1 + 3) + 16 * 3)
+    assert loaded("taa").offset == 4 * (6 * (1 + 1 + 3) + 16 * 3)
 
 
 def test_signals_share_loads_of_what_tells_surfaces_apart() -> None:
