@@ -26,7 +26,7 @@ from svgf_cl.bench.suite import Suite
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.compare.metrics import require_flip
 from svgf_cl.errors import SvgfError
-from svgf_cl.filters import DEFAULT
+from svgf_cl.filters import DEFAULT, Settings
 from svgf_cl.io.atomic import output_folder
 
 RACE_ROUNDS = 20
@@ -44,7 +44,7 @@ def everything(
     require_flip()
     folder = output_folder(output)
     times, race = raced()  # first, for it tells OIDN's memory from what the process grows by
-    suite = Suite(re.compile("")).run(progress_bar)
+    suite = Suite(re.compile(""), Settings()).run(progress_bar)  # whose passes have bars
     traced = tracing.measure(TRACED, USUAL_SHAPE, TRACER_ROUNDS, progress_bar)
     run = replace(suite, results=(*suite.results, *times, *traced))
     sections = [race, picture.section(traced)]

@@ -5,12 +5,12 @@
 //   w_z = exp(-|z - z'| / (step (sigma_depth |grad z . d| + slope_floor z |d|)))     w_n = exp(sigma_normal (n.n' - 1))
 //   w_a = 1 where no channel's albedos are further apart than albedo_threshold octaves, else 0
 //
-//   GUIDED_BY_VARIANCE 1, SVGF:  Var = sum h^2 w^2 Var / (sum h w)^2
-//     w_l = exp(-|l - l'| / (sigma_luminance sqrt(gauss3x3(Var)) + 1e-3 l + 1e-12))
+//   GUIDED_BY_VARIANCE 1, SVGF and Kalman:  Var = sum h^2 w^2 Var / (sum h w)^2
+//     w_l = exp(-|l - l'| / (sigma_luminance sqrt(gauss3x3(Var)) + 1e-3 l + 1e-12)), in Kalman l = (l + guidance) / 2
 //   GUIDED_BY_VARIANCE 0, EAW:
 //     w_c = exp(-|c - c'|^2 / (sigma_color / step)^2)
 //
-// in   guide: normal, depth, albedo;  source: colour and, in SVGF, variance
+// in   guide: normal, depth, albedo;  source: colour and, but for EAW, variance;  in Kalman guidance
 // out  target: the same
 // Schied et al. 2017, section 4.3 and 4.4; Dammertz et al. 2010. All terms and h share one exponential; offsets
 // come in pairs +d and -d that share the scale of w_z.

@@ -5,8 +5,8 @@
 // in   albedo where the frame has it; illumination: the variance that the last level leaves
 // out  confidence: the standard error
 
-// The levels take what their taps hold for independent, which it is not, and know nothing of what they blur: measured,
-// the root of the variance that is left is a third of the error.
+// The levels treat their taps as independent, which they are not, and Var does not include the error that blurring
+// makes: its root is about a third of the measured error.
 #define CALIBRATION 3.0f
 
 KERNEL standard_error(const int4 size,

@@ -11,7 +11,7 @@
 
 #define NEARER 0.9999f   // of a depth: what is not nearer by so much is as near
 #define HALF_PIXEL 0.5f  // from a pixel's centre, which has whole coordinates, to its edge
-#define KNOWN (-1e20f)   // darker than any light: before the first frame all history is
+#define KNOWN (-1e20f)   // history is below this before the first frame, and no light ever is
 #define TAPS 4           // of Catmull and Rom's spline
 
 typedef struct {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -191,4 +192,4 @@ def kalman_kind(stage: str) -> str:
     for kind in ("facet", "change"):
         if stage.startswith(f"{kind}_"):
             return kind
-    return "level" + stage[len("level_1") :] if stage.startswith("level_") else stage
+    return re.sub("^(level_.|filtered)", "level", stage)

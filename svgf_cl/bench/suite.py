@@ -6,7 +6,7 @@ import os
 import re
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import chain, zip_longest
 from typing import TypeVar
 
@@ -16,7 +16,6 @@ from svgf_cl.bench.station import Station
 from svgf_cl.device import devices
 from svgf_cl.device.devices import DeviceReport
 from svgf_cl.errors import SvgfError
-from svgf_cl.filters import Settings
 from svgf_cl.filters.filter import Filter
 from svgf_cl.frame import Shape
 
@@ -35,15 +34,15 @@ class Suite:
     ----------
     pattern : re.Pattern
         Searched for in the benchmarks' names.
-    shapes : sequence of (int, int)
     settings : Filter
+    shapes : sequence of (int, int)
     seconds : float, s
         To spend on each denoiser, about; each kind of sample is taken `TURNS` times whatever it takes.
     """
 
     pattern: re.Pattern[str]
+    settings: Filter
     shapes: Sequence[Shape] = SHAPES
-    settings: Filter = field(default_factory=Settings)
     seconds: float = 1.0
 
     def run(self, progress_bar: ProgressBar) -> Run:
@@ -63,7 +62,8 @@ class Suite:
         chosen = interleaved([[(station, case) for case in station.chosen] for station in stations])
         starts = [row for row in STARTS if self.pattern.search(Case(USUAL_SHAPE, self.settings).name(row))]
         if not chosen and not starts:
-            raise SvgfError(f"--only: expected part of a name such as svgf.frame.1280x720, got {self.pattern.pattern}")
+            name = f"{self.settings.name}.frame.1280x720"
+            raise SvgfError(f"--only: expected part of a name such as {name}, got {self.pattern.pattern}")
         with progress_bar("setting up", len(chosen) + len(stations)) as advance:
             for station, case in chosen:
                 station.set_up(case)

@@ -51,7 +51,7 @@ def bench(
     except ModuleNotFoundError as error:
         raise SvgfError(f"bench needs more ({error}): pip install '.[bench]' in a clone of svgf_cl") from error
     shapes = [parse_size(text) for text in size] or SHAPES
-    suite = Suite(parse_pattern(only), shapes, parse_settings(filter_, set_), seconds)
+    suite = Suite(parse_pattern(only), parse_settings(filter_, set_), shapes, seconds)
     earlier = Run.read(old) if old else None
     folder = output_folder(output) if output else None
     run = suite.run(progress_bar)

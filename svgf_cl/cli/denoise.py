@@ -56,7 +56,7 @@ def denoise(
     \b
     Examples:
       svgf-cl denoise out/box -o out/box-denoised
-      svgf-cl denoise out/box -o out/box-denoised --set iterations=4 --set alpha_color=0.1 --png
+      svgf-cl denoise out/box -o out/box-denoised --set iterations=3 --set alpha_color=0.1 --png
       svgf-cl denoise out/box -o out/box-sure --set standard_error=on   # and the channel standard_error
       svgf-cl denoise out/box -o out/box-eaw --filter eaw --set sigma_color=2
     """

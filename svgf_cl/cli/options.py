@@ -78,17 +78,24 @@ def parse_settings(filter_: str, texts: Iterable[str]) -> Filter:
     for text in texts:
         name, _, value = text.partition("=")
         if name not in known or not value:
-            near = difflib.get_close_matches(name, known, 1, 0.75)
-            hint = f"; did you mean {near[0]}=VALUE?" if near else ""
             raise SettingsError(
                 f"--set: expected NAME=VALUE with a name out of {', '.join(known)} (filter {filter_}), got {text!r}"
-                + hint
+                + hint(name, known)
             )
         try:
             values[name] = known[name].parse(value)
         except (KeyError, ValueError) as error:
             raise SettingsError(f"--set {name}: expected {describe(known[name])}, got {value!r}") from error
     return kind(**values)
+
+
+def hint(name: str, known: Iterable[str]) -> str:
+    """What may have been meant by a name that is not among a filter's settings; empty where nobody knows."""
+    near = difflib.get_close_matches(name, known, 1, 0.75)
+    if near:
+        return f"; did you mean {near[0]}=VALUE?"
+    having = [other for other, kind in FILTERS.items() if name in domains(kind)]
+    return f"; {name} is a setting of {' and '.join(having)}" if having else ""
 
 
 def describe(domain: Domain) -> str:

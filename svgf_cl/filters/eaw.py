@@ -17,8 +17,8 @@ from svgf_cl.settings import documented, number
 class Eaw(WaveletFilter):
     """Parameters of edge-avoiding a-trous wavelets (Dammertz et al. 2010). Equations: docs/algorithm.md.
 
-    The levels filter accumulated noisy light, and tell an edge in it by one tolerance for the whole picture. SVGF, the
-    default filter (`Settings`), estimates that tolerance for each pixel. For comparison, and for scenes of even light.
+    The levels filter accumulated noisy light, and tell an edge in it by one tolerance for the whole picture. SVGF
+    (`Settings`) estimates that tolerance for each pixel. For comparison, and for scenes of even light.
     """
 
     name: ClassVar[str] = "eaw"

@@ -15,6 +15,7 @@ from svgf_cl.filters.wavelet import WaveletFilter
 from svgf_cl.settings import documented, number, switch
 
 SPACING = 2  # pixels: light is tested for change at every second one of every second row
+FILTERED = "filtered"  # the last level, of which the next frame sees the luminance, however many there are
 STANDARD_ERROR = "standard_error"  # the stage, and the channel of files
 
 STEPS = (1, 2, 4)  # of these, between the taps of the passes after the first
@@ -57,8 +58,8 @@ class Kalman(WaveletFilter):
         32.0,
         (8, 1024),
         unit="1 / (1 - cosine)",
-        reason="How sharply normals are told apart: the weight falls to 1/e at a cosine of 1 - 1/sigma_normal. 32, 14 "
-        "degrees: the light is told apart so well that a bumpy surface need not be taken for many.",
+        reason="How sharply normals are told apart: the weight falls to 1/e at a cosine of 1 - 1/sigma_normal. 32 (14 "
+        "degrees): light is told apart so well that the bumps of one surface need not count as other surfaces.",
     )
     sigma_luminance: float = number(
         4.5,
@@ -73,26 +74,26 @@ class Kalman(WaveletFilter):
         unit="standard deviations",
         reason="How far the new frame must lie off the history to count as a change of light. Less follows moving "
         "shadows sooner, more is steadier under noise with fireflies: at 2.65 the filter is as steady as SVGF there. "
-        "At 1000 only light without any noise is tested.",
+        "At 1000 changes are found only in light without any noise.",
     )
     change_sigma_depth: float = number(
         4.0,
         (1e-3, 1e3),
         unit="slopes of the surface",
-        reason="As sigma_depth, for the test. 4: a change of light does not stop where a surface bends, and a test "
-        "over more pixels finds smaller changes.",
+        reason="As sigma_depth, for the test and for smoothing the guidance. 4: a change of light does not stop where "
+        "a surface bends, and a test over more pixels finds smaller changes.",
     )
     change_sigma_normal: float = number(
         8.0,
         (1, 1024),
         unit="1 / (1 - cosine)",
-        reason="As sigma_normal, for the test. 8, 29 degrees, for the same reason.",
+        reason="As sigma_normal, for the test and for smoothing the guidance. 8 (29 degrees), for the same reason.",
     )
 
     standard_error: bool = switch(
         False,
-        reason="Also make the stage standard_error: how far each pixel's luminance may lie off the truth, as a "
-        "standard deviation. Off, because it is another pass.",
+        reason="Also make the stage standard_error, an estimate of the standard error of each pixel's luminance before "
+        "antialiasing; 0 where nothing was hit, as that light is passed on with its noise. Off: it is another pass.",
     )
 
     @property
@@ -106,8 +107,8 @@ class Kalman(WaveletFilter):
 
     def pipeline(self, inputs: Inputs) -> Pipeline:
         """The passes of a frame: predict, test, update, then the levels, of which the next frame sees the luminance."""
-        names = [f"level_{level}" for level in range(1, self.iterations + 1)]
-        levels = [self.filtered(inputs, name, is_last=name == names[-1]) for name in names]
+        names = [*(f"level_{level}" for level in range(1, self.iterations)), FILTERED]
+        levels = [self.filtered(inputs, name, is_last=name == FILTERED) for name in names]
         passes = (
             self.demodulate_pass(inputs),
             self.predict_pass(inputs, levels[-1]),
@@ -125,8 +126,8 @@ class Kalman(WaveletFilter):
                 ),
                 [self.guidance(inputs, "guidance_1"), *[self.guidance(inputs, "guidance")] * (self.iterations - 1)],
             ),
-            *self.confidence_passes(inputs, levels[-1]),
             *self.last_passes(inputs, levels[-1]),
+            *self.confidence_passes(inputs, levels[-1]),  # at the end, where no later pass takes its memory
         )
         return Pipeline(passes, inputs.defines | self.macros | {"GUIDED_BY_VARIANCE": 1, "GUIDED_BY_PAST": 1})
 
@@ -245,7 +246,7 @@ class Kalman(WaveletFilter):
         )
 
     def confidence_passes(self, inputs: Inputs, filtered: Resource) -> Iterator[Pass]:
-        """The standard error of the result, if it is asked for."""
+        """The standard error of the filtered light, if it is asked for."""
         if not self.standard_error:
             return
         albedo = (user("albedo"),) if inputs.divides_by_albedo else ()

@@ -52,14 +52,14 @@ def predict(inputs: Inputs) -> float:
     """Section 7: four taps of the footprint, and the innovation."""
     planes = 3 + 5  # H; V, W, S, E, G
     tap = tap_of_the_past(inputs) + 1 + 2 * planes * len(inputs.signals)
-    innovation = 3 + 4 + 3 + 1 + 3 + 1 + BLEND  # c - H; its limit; D; phi; E
+    innovation = 3 + 1 + 1 + BLEND  # D; phi; phi - S; E
     return FOOTPRINT + 4 * tap + 1 + len(inputs.signals) * (planes + innovation)
 
 
 def mean_of_change(taps: int, signals: int) -> float:
-    """Section 7: one pass of the test, of so many taps beside the middle one."""
+    """Section 7: one pass of the test, of so many taps beside the middle one; pairs share the tolerance of depth."""
     sums = 2 * 3 + 2 + 2 + 2  # d, r, e, f
-    return FACET + taps * (TOLERANCE + WEIGHT + 4) + (taps + 1) * signals * sums + 1 + signals * 6
+    return FACET + (taps + 1) // 2 * TOLERANCE + taps * (WEIGHT + 4) + (taps + 1) * signals * sums + 1 + signals * 6
 
 
 def detect(signals: int) -> float:
@@ -72,15 +72,15 @@ def update(inputs: Inputs) -> float:
     """Section 7: the corrections of the surroundings, the gain, the blend; on average 9/4 taps are read."""
     signals = len(inputs.signals)
     tap = TOLERANCE + WEIGHT + 2 + 2 * 6 * signals
-    gain = 2 + 7 + 3 + 3  # R; q; W; a
+    gain = 2 + 7 + 3 + 3 + 3  # R; q; W; a; Var
     blend = 3 * (2 + BLEND) + 2 + BLEND + 2 + 4 + 3 + 2  # H; S; E; V; W; G
     return GRADIENT + FACET + 9 / 4 * tap + 1 + signals * (6 + gain + blend)
 
 
 def guidance(inputs: Inputs) -> float:
-    """Section 7: nine taps of luminance; the variance of the mean."""
+    """Section 7: nine taps of luminance, of which pairs share the tolerance of depth."""
     signals = len(inputs.signals)
-    return GRADIENT + FACET + 8 * (TOLERANCE + WEIGHT + 1) + 9 * (1 + 2 * signals) + signals * (1 + 3 + 3)
+    return GRADIENT + FACET + 4 * TOLERANCE + 8 * (WEIGHT + 1) + 9 * (1 + 2 * signals) + signals * (1 + 3)
 
 
 @dataclass(frozen=True)

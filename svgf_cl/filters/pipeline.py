@@ -6,7 +6,6 @@ kernel's arguments all follow from a filter's `Pipeline`.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
@@ -52,10 +51,6 @@ class Quantity:
     stage: str = ""
     is_light: bool = False
     unknown: float | None = None
-
-    def __post_init__(self) -> None:
-        if self.unknown is not None and math.isnan(self.unknown):
-            object.__setattr__(self, "unknown", math.nan)  # the one NaN that equals itself in a comparison of tuples
 
     @property
     def planes(self) -> int:

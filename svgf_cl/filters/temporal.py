@@ -16,7 +16,7 @@ from svgf_cl.filters.signals import Inputs
 from svgf_cl.filters.taps import CROSS, HERE, footprint, grid
 from svgf_cl.settings import number, switch
 
-UNKNOWN = -1e30  # in TAA's history before the first frame: darker than any light, and yet 0 times it is 0
+UNKNOWN = -1e30  # in TAA's history before the first frame: less than KNOWN of taa.cl, and finite, so 0 times it is 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,8 +69,8 @@ class TemporalFilter(Filter):
         (0.0, 0.25),
         unit="share of a pixel",
         reason="How much of each of its two neighbours in a row, and in a column, a pixel takes of the new frame in "
-        "antialiasing; needs taa. 0: a pixel is the mean over its own square. Renderers that filter pixels spread "
-        "what they see over more than one: 0.15 suits Blender's default filter.",
+        "antialiasing; needs taa. 0: a pixel is the mean over its own square. Above 0 it imitates the pixel filter "
+        "of a renderer, for frames that were not filtered yet: 0.15 is close to Blender's default.",
     )
     half_guides: bool = switch(
         False,
@@ -88,7 +88,7 @@ class TemporalFilter(Filter):
         super().__post_init__()
         if self.pixel_filter and not self.taa:
             raise SettingsError(
-                f"{type(self).__name__}.pixel_filter: expected 0 without taa, got {self.pixel_filter}; set taa too"
+                f"{type(self).__name__}.pixel_filter: expected 0 without taa, got {self.pixel_filter}; set taa=on too"
             )
 
     @property

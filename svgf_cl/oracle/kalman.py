@@ -42,7 +42,7 @@ def predict(now: Stages, guides: Guides, past: Past | None, settings: Kalman) ->
     color, before, known = np.zeros_like(light), np.zeros(light.shape[:-1]), np.zeros(guides.depth.shape, bool)
     if past is not None:
         around = footprint(guides, past.guides, settings)
-        shown = luminance(past.stages[f"level_{settings.iterations}"])
+        shown = luminance(past.stages["filtered"])
         state = {**past.stages, "spread": past.stages["sample_variance"], "luminance": shown}
         predicted = {name: around.mean(around.taps(state[name])) for name in predicted}
         color, before = (around.mean(around.taps(state[name])) for name in ("accumulated", "residual"))
@@ -275,7 +275,8 @@ class Oracle(FilterOracle[Kalman]):
         yield "guidance", guidance(now, guides, settings)
         source = "accumulated", "variance"
         for level in range(1, settings.iterations + 1):
-            target = f"level_{level}", f"level_{level}_variance"
+            name = f"level_{level}" if level < settings.iterations else "filtered"
+            target = name, f"{name}_variance"
             compared = now["guidance_1" if level == 1 else "guidance"]
             light, variance = now[source[0]], now[source[1]]
             yield "atrous", dict(zip(target, atrous(light, variance, guides, level, settings, compared), strict=True))

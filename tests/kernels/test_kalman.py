@@ -166,9 +166,16 @@ def test_a_grazing_floor_is_not_guided_by_a_bright_sky() -> None:
     assert_array_equal(pictures[1][10:], pictures[0][10:])
 
 
+def test_standard_error_can_be_read_with_antialiasing_too() -> None:
+    """After the frame, without copies: no later pass has taken its memory."""
+    den = Denoiser(SHAPE, settings=Kalman(taa=True, standard_error=True))
+    den.denoise(wall(color=noise()))
+    assert (den.stage("standard_error") > 0).all()
+
+
 @pytest.mark.parametrize("count", [1, 4])
 def test_standard_error_is_three_roots_of_the_variance_times_albedo(count: int) -> None:
     frames = [wall(color=noise(seed), albedo=(1.0, 0.5, 0.25)) for seed in range(count)]
     _, den = feed(*frames, standard_error=True)
-    expected = 3 * np.sqrt(den.stage("level_4_variance")[0]) * (np.array((1, 0.5, 0.25)) @ (0.2126, 0.7152, 0.0722))
+    expected = 3 * np.sqrt(den.stage("filtered_variance")[0]) * (np.array((1, 0.5, 0.25)) @ (0.2126, 0.7152, 0.0722))
     assert_allclose(den.stage("standard_error"), expected, rtol=1e-5)

@@ -17,7 +17,7 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from svgf_cl import ArgumentError, Denoiser, DeviceError, Eaw, Frame, Inputs, Settings, SvgfError
+from svgf_cl import ArgumentError, Denoiser, DeviceError, Eaw, Frame, Inputs, Kalman, Settings, SvgfError
 from svgf_cl.compare.rounding import largest_channel, relative_error
 from svgf_cl.device import devices
 from svgf_cl.device.layout import HALO, Layout
@@ -223,16 +223,29 @@ class TestUpdate:
         assert_array_equal(den.stage("history_length"), plain_lengths(plain, after))
         assert_array_equal(den.stage("mean"), plain.stage("mean"))
 
+    @pytest.mark.parametrize("chosen", [Kalman(iterations=3), Kalman(taa=True, standard_error=True)], ids=str)
+    def test_nor_is_the_past_of_kalman_lost(self, chosen: Kalman) -> None:
+        *before, after = bumpy_sequence(FULL, count=3)
+        den, plain = Denoiser(SHAPE), Denoiser(SHAPE)
+        for frame in before:
+            den.denoise(frame)
+            plain.denoise(frame)
+        assert den.update(chosen) is True
+        den.denoise(after)
+        plain.denoise(after)
+        for name in ("inverse_count", "accumulated", "tone", "residual"):
+            assert_array_equal(den.stage(name), plain.stage(name))
+
     @pytest.mark.parametrize("chosen", [Settings(half_history=True), Eaw()], ids=str)
     def test_a_past_that_is_kept_in_another_way_is_forgotten(self, chosen: Settings | Eaw) -> None:
         before, after = bumpy_sequence(FULL, count=2)
-        den = Denoiser(SHAPE)
+        den = Denoiser(SHAPE, settings=Settings())
         den.denoise(before)
         assert den.update(chosen) is True
         assert_array_equal(den.denoise(after), Denoiser(SHAPE, settings=chosen).denoise(after))
 
     def test_what_it_shows_is_never_of_a_plan_that_has_not_run(self) -> None:
-        den = Denoiser(SHAPE, keep_stages=True)
+        den = Denoiser(SHAPE, settings=Settings(), keep_stages=True)
         den.denoise(bumpy_sequence(FULL, count=1)[0])
         assert den.update(Settings(iterations=3)) is True
         assert (den.stages, den.profile()) == ([], {})
@@ -241,7 +254,7 @@ class TestUpdate:
 
     def test_a_cut_before_it_stays_a_cut(self) -> None:
         before, after = bumpy_sequence(FULL, count=2)
-        den = Denoiser(SHAPE)
+        den = Denoiser(SHAPE, settings=Settings())
         den.denoise(before)
         den.reset()
         den.update(Settings(iterations=2))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from svgf_cl import Eaw, Settings, SettingsError
+from svgf_cl import Eaw, Kalman, Settings, SettingsError
 from svgf_cl.filters import FILTERS
 from svgf_cl.settings import REASON, Choice, Range, Switch, defaults, domains
 
@@ -89,7 +89,7 @@ def test_switches_are_bools(name: str, value: Any) -> None:
 
 
 @every_filter
-def test_pixel_filter_needs_taa(kind: type[Settings] | type[Eaw]) -> None:
+def test_pixel_filter_needs_taa(kind: type[Settings] | type[Eaw] | type[Kalman]) -> None:
     with pytest.raises(SettingsError, match=rf"{kind.__name__}\.pixel_filter: expected 0 without taa, got 0\.15; set"):
         kind(pixel_filter=0.15)
 

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 import pyopencl as cl
 import pytest
 
-from svgf_cl import SvgfError
+from svgf_cl import Settings, SvgfError
 from svgf_cl.bench import ceilings, station
 from svgf_cl.bench.suite import TURNS, Suite, interleaved, timed_devices
 from svgf_cl.device import devices
@@ -43,7 +43,7 @@ class Steps:
 
 def test_a_filter_chooses_by_name() -> None:
     steps = Steps()
-    run = Suite(re.compile(r"svgf\.(atrous\.2|enqueue)\.16x9"), [SMALL], seconds=0.0).run(steps.bar)
+    run = Suite(re.compile(r"svgf\.(atrous\.2|enqueue)\.16x9"), Settings(), [SMALL], seconds=0.0).run(steps.bar)
     timed = [result for result in run.results if not result.name.startswith("ceiling.")]
     names = [(result.name, result.clock) for result in timed]
     assert sorted(names) == [("svgf.atrous.2.16x9", c) for c in ("event", "host")] + [("svgf.enqueue.16x9", "host")]
@@ -54,7 +54,7 @@ def test_a_filter_chooses_by_name() -> None:
 
 
 def test_a_frame_knows_its_cost_and_memory() -> None:
-    run = Suite(re.compile(r"frame\.16x9|atrous\.16x9"), [SMALL], seconds=0.0).run(Steps().bar)
+    run = Suite(re.compile(r"frame\.16x9|atrous\.16x9"), Settings(), [SMALL], seconds=0.0).run(Steps().bar)
     (frame,) = run.of(run.devices[0], row="frame", clock="event")
     (levels,) = run.of(run.devices[0], row="atrous", clock="event")
     assert frame.facts["planes"] > 0
@@ -64,7 +64,7 @@ def test_a_frame_knows_its_cost_and_memory() -> None:
 
 def test_no_name_matches() -> None:
     with pytest.raises(SvgfError, match=r"--only: expected part of a name such as .*, got nothing"):
-        Suite(re.compile("nothing"), [SMALL]).run(Steps().bar)
+        Suite(re.compile("nothing"), Settings(), [SMALL]).run(Steps().bar)
 
 
 def test_what_has_no_room_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -72,7 +72,7 @@ def test_what_has_no_room_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
         raise SvgfError("no room for a buffer of 8 MiB")
 
     monkeypatch.setattr(station, "Rig", full)
-    run = Suite(re.compile("frame.16x9"), [SMALL], seconds=0.0).run(Steps().bar)
+    run = Suite(re.compile("frame.16x9"), Settings(), [SMALL], seconds=0.0).run(Steps().bar)
     (line,) = run.left_out
     assert line.startswith("svgf.frame.16x9 on ")
     assert line.endswith("no room for a buffer of 8 MiB")

@@ -43,7 +43,12 @@ def test_help_tells_what_each_filter_has() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "hint"), [("sigma_detph=2", "did you mean sigma_depth=VALUE"), ("iterations", "filter svgf.*, got 'iter")]
+    ("text", "hint"),
+    [
+        ("sigma_detph=2", "did you mean sigma_depth=VALUE"),
+        ("iterations", "filter svgf.*, got 'iter"),
+        ("standard_error=on", "standard_error is a setting of kalman"),
+    ],
 )
 def test_a_slip_of_the_hand_gets_a_hint(text: str, hint: str) -> None:
     with pytest.raises(SettingsError, match=hint):

@@ -124,9 +124,6 @@ class TestPipeline:
         with pytest.raises(ValueError, match="read-only"):
             entry.arrays["weights"][0] = 2
 
-    def test_nan_equals_nan(self) -> None:
-        assert Quantity("q", unknown=float("nan")) == Quantity("q", unknown=math.nan)
-
     def test_numbers_alone_make_no_other_kernel(self) -> None:
         inputs = Inputs.every()
         plain = Settings().pipeline(inputs)
