@@ -15,6 +15,7 @@ from svgf_cl.filters.wavelet import WaveletFilter
 from svgf_cl.settings import documented, number, switch
 
 SPACING = 2  # pixels: light is tested for change at every second one of every second row
+CARRIED = ("color", "spread", "inverse_count", "tone", "residual")  # of the state, into the next frame
 FILTERED = "filtered"  # the last level, of which the next frame sees the luminance, however many there are
 STANDARD_ERROR = "standard_error"  # the stage, and the channel of files
 
@@ -135,7 +136,6 @@ class Kalman(WaveletFilter):
         """What was known of each pixel's light, moved along motion, and how the new frame differs from it."""
         guide, state = self.guide(inputs), self.state(inputs)
         taps = footprint(2)
-        kept = [name for name in state.names if name != "variance"]
         return Pass(
             "predict",
             "predict",
@@ -146,7 +146,7 @@ class Kalman(WaveletFilter):
                 access(guide, taps=dict.fromkeys(guide.names, HERE) | {"depth": CROSS}),
                 access(self.demodulated(inputs), "illumination"),
                 access(guide, taps=dict.fromkeys(guide.names, taps), previous=True),
-                access(state, taps=dict.fromkeys(kept, taps), previous=True),
+                access(state, taps=dict.fromkeys(CARRIED, taps), previous=True),
                 access(filtered, "filtered", {"color": taps}),
             ),
             writes=(access(self.prediction(inputs)), access(self.innovation(inputs))),
@@ -204,7 +204,6 @@ class Kalman(WaveletFilter):
     def update_pass(self, inputs: Inputs) -> Pass:
         """The prediction, corrected by what has changed, blended with the new light by the Kalman gain."""
         state = self.state(inputs)
-        made = [name for name in state.names if name != "variance"]
         return Pass(
             "update",
             "update",
@@ -220,7 +219,7 @@ class Kalman(WaveletFilter):
                 access(self.facets(), taps={"depth": BLOCK, "normal": BLOCK}),
                 access(self.correction(inputs), taps=dict.fromkeys(self.correction(inputs).names, BLOCK)),
             ),
-            writes=(access(state, taps=dict.fromkeys(made, HERE)), access(self.expected(inputs))),
+            writes=(access(state, taps=dict.fromkeys(CARRIED, HERE)), access(self.expected(inputs))),
             operations=operations.update(inputs),
         )
 

@@ -8,7 +8,9 @@ from importlib import resources
 import numpy as np
 import pytest
 
+from svgf_cl.device import programs
 from svgf_cl.filters.formats import HALF_MAX
+from svgf_cl.filters.temporal import UNKNOWN
 from svgf_cl.oracle import albedo, kalman, svgf, temporal, wavelet
 
 # By the kernels' name. Where there are two values the second is that of 16-bit floats (HALF_HISTORY), or of 3x3 taps.
@@ -31,6 +33,7 @@ EXPECTED = {
     "RELATIVE_TOLERANCE": (svgf.LUMINANCE_TOLERANCE[0],),
     "LEAST_TOLERANCE": (svgf.LUMINANCE_TOLERANCE[1],),
     "MIDDLE": (wavelet.SPLINES[2][0], wavelet.SPLINES[1][0]),
+    "NOTHING_KNOWN": (kalman.NOTHING_KNOWN,),
     "RESIDUAL_GAIN": (kalman.RESIDUAL_GAIN,),
     "LEAST_SPREAD": (kalman.LEAST_SPREAD,),
     "CORRELATED_2": (kalman.CORRELATED[2],),
@@ -58,6 +61,11 @@ def stated(name: str) -> set[np.float32]:
 @pytest.mark.parametrize("name", EXPECTED)
 def test_kernels_and_oracle_state_the_same(name: str) -> None:
     assert stated(name) == {np.float32(value) for value in EXPECTED[name]}
+
+
+def test_unknown_history_of_antialiasing_is_below_all_that_is_known() -> None:
+    (known,) = re.findall(r"^#define KNOWN .(\S+)f.", programs.source("taa"), re.MULTILINE)
+    assert UNKNOWN < float(known) < 0
 
 
 def test_light_in_16_bits_ends_where_its_format_does() -> None:
