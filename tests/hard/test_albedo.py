@@ -20,7 +20,7 @@ from tests.frames import SHAPE, noise, wall
 from tests.hard.variants import Variant, on
 
 # Albedo is divided out of each signal and multiplied back on what storage kept; no TAA sees it.
-variants = on("precise", "precise, two signals, TAA", "fp16")
+variants = on("precise", "precise, two signals, TAA", "fp16", "Kalman")
 
 STEPS = np.array([0, 1e-6, 1e-3, 0.02, 0.5, 1, 1.5, 8, 1e3])
 

@@ -13,7 +13,7 @@ from tests.frames import SHAPE, bumpy_sequence
 from tests.hard.variants import Variant, on
 
 # Depth goes into weights, and into what TAA calls the foremost; it is kept in 32 bits whatever the storage.
-variants = on("precise", "precise, two signals, TAA", "fast")
+variants = on("precise", "precise, two signals, TAA", "fast", "Kalman")
 
 NEAREST, FARTHEST = 1e-6, 1e9
 

@@ -11,7 +11,7 @@ from tests.frames import FACING, SHAPE, TINY
 from tests.hard.variants import Variant, on
 
 # Storage ends at 65504, TAA compresses, and weights have to tell light that bright: each way to do so, once.
-variants = on("precise", "precise, two signals, TAA", "fp16", "fast")
+variants = on("precise", "precise, two signals, TAA", "fp16", "fast", "Kalman")
 # A share of the new frame decays alike whatever the levels' weights: these spread it.
 of_decay = on("precise", "precise, two signals, TAA", "fp16")
 

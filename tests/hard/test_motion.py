@@ -13,7 +13,9 @@ from tests.frames import SHAPE, bumpy_sequence, only
 from tests.hard.variants import Variant, on
 
 # Storage in 16 bits fetches history in a way of its own, and so does TAA; weights (fast) know nothing of motion.
-variants = on("precise", "precise, two signals, TAA", "fp16, two signals, TAA")
+variants = on("precise", "precise, two signals, TAA", "fp16, two signals, TAA", "Kalman")
+# In Kalman neighbours tell of changes of light, so that a pixel's state depends on theirs.
+of_lone_pixels = on("precise", "precise, two signals, TAA", "fp16, two signals, TAA")
 # The length of history is kept, and TAA and the signals share it.
 of_lengths = on("precise", "fp16")
 
@@ -74,7 +76,7 @@ def test_even_light_stays_as_it_is(variant: Variant, motion) -> None:
 
 
 @every_motion
-@variants
+@of_lone_pixels
 def test_other_pixels_keep_their_history(variant: Variant, motion) -> None:
     rng = np.random.default_rng(11)
     first, second = bumpy_sequence(variant.fields, count=2)

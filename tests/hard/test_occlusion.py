@@ -13,7 +13,7 @@ from svgf_cl.frame import Shape
 from tests.hard.variants import Variant, on
 
 # Ghosts come of history, of light and of TAA, and of weights that let light through; depths are never rounded.
-variants = on("precise", "precise, two signals, TAA", "fast")
+variants = on("precise", "precise, two signals, TAA", "fast", "Kalman")
 # Whether history is taken up again is decided before the levels.
 of_history = on("precise", "precise, two signals, TAA")
 

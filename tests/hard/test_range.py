@@ -13,7 +13,7 @@ from tests.frames import FACING, SHAPE, bumpy_sequence, noise
 from tests.hard.variants import Variant, on
 
 # Light of any strength goes through storage, weights and TAA, and each ends or rounds somewhere else: each once.
-variants = on("precise", "precise, two signals, TAA", "fp16", "fast")
+variants = on("precise", "precise, two signals, TAA", "fp16", "fast", "Kalman")
 # Made safe as it comes in, before it is stored or weighed; each signal for itself.
 of_input = on("precise", "precise, two signals, TAA")
 

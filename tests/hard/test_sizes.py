@@ -15,7 +15,7 @@ from tests.frames import PLAIN, SHAPE, bumpy_sequence
 from tests.hard.variants import VARIANTS, Variant, on
 
 # Planes of 16 bits are addressed in a way of their own, and TAA has borders too; fast weights have the same taps.
-variants = on("precise", "precise, two signals, TAA", "fp16, two signals, TAA")
+variants = on("precise", "precise, two signals, TAA", "fp16, two signals, TAA", "Kalman", "Kalman, two signals, TAA")
 # Refused by the host: one that keeps all there is to keep.
 of_host = on("precise, two signals, TAA")
 

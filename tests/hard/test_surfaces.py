@@ -11,7 +11,7 @@ from tests.frames import FACING, SHAPE, noise
 from tests.hard.variants import Variant, on
 
 # Normals are stored and weighed, in each way once; TAA, which takes in neighbours, must not take in the sky.
-variants = on("precise", "precise, two signals, TAA", "fp16", "fast")
+variants = on("precise", "precise, two signals, TAA", "fp16", "fast", "Kalman")
 # The length of history is kept, and TAA and the signals share it.
 of_lengths = on("precise", "fp16")
 

@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from svgf_cl import Denoiser, Frame, Settings
+from svgf_cl import Denoiser, Frame, Kalman, Settings
 from svgf_cl.compare.rounding import largest_channel
+from svgf_cl.filters.temporal import TemporalFilter
 from svgf_cl.frame import REQUIRED, Shape
-from svgf_cl.oracle.svgf import Oracle
+from svgf_cl.oracle import oracle_of
 from tests.frames import FULL, SHAPE, SPLIT, only, wall
 
 # Share of pixels that may be further off: where a tap lies within rounding of a threshold, it counts for one alone.
@@ -28,7 +29,7 @@ class Variant:
 
     Parameters
     ----------
-    settings : Settings
+    settings : TemporalFilter
     signals : int, 1 or 2
     rounding : float
         Largest relative error of a value that is stored and read again, once for each stage it passes.
@@ -42,7 +43,7 @@ class Variant:
         What illumination saturates at, and the step below which it cannot be told from black.
     """
 
-    settings: Settings
+    settings: TemporalFilter
     signals: int
     rounding: float
     error: float
@@ -71,7 +72,7 @@ class Variant:
 
     def expected(self, frames: Iterable[Frame], shape: Shape = SHAPE) -> Iterator[np.ndarray]:
         """What the oracle makes of each frame of a sequence."""
-        return map(Oracle(shape, self.settings).denoise, frames)
+        return map(oracle_of(self.settings, shape).denoise, frames)
 
     def assert_follows_oracle(self, frames: Iterable[Frame], shape: Shape = SHAPE, error: float | None = None) -> None:
         """Every pixel of every picture is finite and, but for a few, within `error` of the oracle's."""
@@ -96,6 +97,8 @@ class Variant:
 PRECISE = {"rounding": 1e-6, "error": 1e-4, "outshone": 1e-3}
 HALVES = {"rounding": 1e-3, "error": 1e-1, "outshone": 1e-1, "greatest": 65504.0, "least": 2.0**-24}
 FAST = {"rounding": 1e-6, "error": 1e-1, "outshone": 2.0}
+# How much of a change is believed goes by a variance of as few as two pixels, which cancels where they are alike.
+KALMAN = {"rounding": 1e-6, "error": 6e-2, "outshone": 1e-1}
 # TAA clamps chroma between neighbours: beside a light 1e6 times as bright, chroma is known to that one's rounding only.
 OUTSHONE_CHROMA = {"outshone": 5e-2}
 
@@ -106,6 +109,8 @@ VARIANTS = {
     "fp16, two signals, TAA": Variant(Settings(half_guides=True, half_history=True, taa=True), 2, **HALVES),
     "fast": Variant(Settings(precision="fast"), 1, **FAST),
     "fast, two signals, TAA": Variant(Settings(precision="fast", taa=True), 2, **FAST),
+    "Kalman": Variant(Kalman(), 1, **KALMAN),
+    "Kalman, two signals, TAA": Variant(Kalman(taa=True), 2, **KALMAN),
 }
 
 
