@@ -5,6 +5,7 @@ python -m benchmarks.accuracy_page [FILE]
 
 from __future__ import annotations
 
+import itertools
 import json
 import subprocess
 import sys
@@ -19,7 +20,7 @@ import numpy as np
 
 from benchmarks import steady_light
 from benchmarks.implementations import Environment, environments
-from svgf_cl import Frame, Settings
+from svgf_cl import Frame, Kalman, Settings
 from svgf_cl.bench import error_to_oracle
 from svgf_cl.compare.rounding import SCALE_SHARE
 from svgf_cl.device import devices
@@ -29,6 +30,8 @@ from svgf_cl_tracer import Shot, builtin_scene, render_sequence
 
 SHAPE = (36, 64)
 FRAMES = 4
+ALL_KERNELS = (Settings(taa=True), Kalman(taa=True, standard_error=True))
+WHOLE = (Kalman(), Settings())
 PIPELINE_FRAMES = 3
 COLUMNS = ("absolute", "relative", "ulps", "decided_otherwise")
 HERE = "--here"
@@ -38,10 +41,10 @@ INTRODUCTION = f"""# Accuracy
 Made by `make docs` (`python -m benchmarks.accuracy_page docs/accuracy.md`); do not edit. `make test-all` prints it for
 the machine it runs on.
 
-Every kernel is given its actual float32 input and held against the same function of `svgf_cl/oracle/svgf.py` in
-float64, on {FRAMES} frames of {SHAPE[1]}x{SHAPE[0]} each of two sequences: the built-in Cornell box (1 sample, moving
-camera), and unrelated numbers in every field, with misses, ids and motion of several pixels. Direct and indirect light
-apart, TAA on. The largest error of any pixel of any result of a kernel:
+Every kernel of SVGF and of Kalman is given its actual float32 input and held against the same function of
+`svgf_cl/oracle/` in float64, on {FRAMES} frames of {SHAPE[1]}x{SHAPE[0]} each of two sequences: the built-in Cornell
+box (1 sample, moving camera), and unrelated numbers in every field, with misses, ids and motion of several pixels.
+Direct and indirect light apart, TAA on. The largest error of any pixel of any result of a kernel:
 
 - absolute: in the result's own unit (radiance, its square for a variance, or 1);
 - relative: `|got - expected| / (|expected| + {SCALE_SHARE:g} * mean |expected|)`; of a colour the greatest channel
@@ -52,7 +55,8 @@ Where rounding tips a decision (a tap just accepted or just refused) a pixel may
 relative; such pixels are left out, and their share is in the last column.
 
 Why not zero: float32 rounds by half an ULP, 6e-8. 128 times a cosine multiplies that by 128, an exponent of up to 80 by
-as much again, and the polynomial exponential adds 4e-6; the variance sums squares of differences.
+as much again, and the polynomial exponential adds 4e-6; the variance sums squares of differences. How much of a change
+is believed (detect, update) goes by a variance of as few as two pixels, which cancels where they are alike.
 """
 
 WHOLE_FILTER = f"""
@@ -85,15 +89,13 @@ def measured() -> dict[str, Any]:
     queue = devices.default_queue()
     traced = render_sequence(Shot(builtin_scene("cornell"), SHAPE, FRAMES))
     kernels: dict[str, list[Deviation]] = {}
-    for frames in (traced, random_frames(SHAPE, FRAMES)):
-        for deviation in deviations(frames, Settings(taa=True), queue).values():
+    for frames, settings in itertools.product((list(traced), list(random_frames(SHAPE, FRAMES))), ALL_KERNELS):
+        for deviation in deviations(frames, settings, queue).values():
             kernels.setdefault(deviation.kernel, []).append(deviation)
-    largest, rms = error_to_oracle(Settings(), frames=PIPELINE_FRAMES, queue=queue)
     return {
         "device": f"{queue.device.name}, {queue.device.platform.version.strip()}, driver {queue.device.driver_version}",
         "kernels": {name: asdict(worst(stages)) for name, stages in kernels.items()},
-        "largest": largest,
-        "rms": rms,
+        "whole": {each.name: error_to_oracle(each, frames=PIPELINE_FRAMES, queue=queue) for each in WHOLE},
     }
 
 
@@ -120,15 +122,16 @@ def page(found: dict[str, dict[str, Any]]) -> str:
         for name, figures in found.items()
     ]
     whole = [
-        (name, f"{figures['rms']:.1e}", f"{figures['largest']:.1e}", figures["device"])
+        (filter_, name, f"{rms:.1e}", f"{largest:.1e}", figures["device"])
         for name, figures in found.items()
+        for filter_, (largest, rms) in figures["whole"].items()
     ]
     return "\n".join(
         [
             INTRODUCTION,
             table(("kernel", "implementation", *(column.replace("_", " ") for column in COLUMNS)), *errors),
             WHOLE_FILTER,
-            table(("implementation", "rms", "largest", "device"), *whole),
+            table(("filter", "implementation", "rms", "largest", "device"), *whole),
             "",
             steady_light.INTRODUCTION,
             steady_light.table(),
