@@ -11,7 +11,6 @@
 
 #define MAX_CHANNEL 1e10f  // of a radiance or a normal; the sun's disc has 2e9 cd/m2
 #define MIN_DEPTH 1e-20f
-#define MAX_DEPTH 1e20f     // some renderers write their greatest number where nothing was hit
 #define MIN_NORMAL2 1e-12f  // square of a normal's length: any unit serves, and what is shorter points nowhere
 
 // The radiance of each signal, by what is to be done with it.

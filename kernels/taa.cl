@@ -75,9 +75,8 @@ INLINE Color motion_of(const int4 size, int x, int y, intv front, __global const
     const intv column = min(x + LANES + front - down * size.z, (intv)(size.x - 1));
     const intv i = (column + (y + down) * size.x) * MOTION;
     Color m;
-    m.channel[0] = gather(motion, i);
-    m.channel[1] = gather(motion, i + 1);
     m.channel[2] = (floatv)(0.0f);
+    UNROLLED_FOR(k, MOTION) m.channel[k] = gather(motion, i + k);
     return m;
 }
 
@@ -187,7 +186,8 @@ KERNEL taa(const int4 size, const float alpha_taa, const float pixel_filter, __g
     const Color m = motion_of(size, x, y, front, motion);
     const floatv px = to_float(x + LANES) + m.channel[0], py = to_float((intv)(y)) + m.channel[1];
     const float right = (float)size.x - HALF_PIXEL, bottom = (float)size.y - HALF_PIXEL;
-    const intv seen = (px >= -HALF_PIXEL) & (px < right) & (py >= -HALF_PIXEL) & (py < bottom);  // false for NaN
+    intv seen = (px >= -HALF_PIXEL) & (px < right) & (py >= -HALF_PIXEL) & (py < bottom);  // false for NaN
+    seen &= fabs(m.channel[2]) <= MAX_DEPTH;
     const floatv mx = where(seen, m.channel[0], (floatv)(0.0f)), my = where(seen, m.channel[1], (floatv)(0.0f));
     const YCoCg h = read_history(size, x, y, seen, mx, my, history);
 

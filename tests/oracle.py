@@ -46,7 +46,7 @@ KALMAN_TOLERANCES = TOLERANCES | {
     "change": 3e-4,  # weights of exp of up to -80, squared for the share; means of both signs cancel
     # How much is believed goes by a variance, <E^2> - <E>^2, of as few as two pixels: where they are nearly alike, or
     # count for little beside the middle one, that cancels.
-    "correction": 3e-4,
+    "correction": 1e-3,
     "correction_residual": 1e-3,
     "correction_doubt": 1e-3,
     "correction_spread": 1e-3,
@@ -64,7 +64,7 @@ KALMAN_TOLERANCES = TOLERANCES | {
 
 # Share of pixels that may be decided otherwise, where a tap lies within rounding of a threshold. None was, on PoCL.
 DECIDED_OTHERWISE = 5e-4
-KALMAN_DECIDED_OTHERWISE = 1e-3  # one of the 1000 that a coarse stage has; measured on all devices
+KALMAN_DECIDED_OTHERWISE = 2e-3  # two of the 1000 that a coarse stage has; measured on all devices
 
 # The whole pipeline over a sequence against the whole oracle: errors of one frame are the next frame's input, yet they
 # do not build up, as the filter is an average. Measured: 3e-5, and 1e-4 with sigma_normal 1024.

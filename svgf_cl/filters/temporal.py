@@ -200,7 +200,7 @@ class TemporalFilter(Filter):
             "taa",
             scalars={"alpha_taa": self.alpha_taa, "pixel_filter": self.pixel_filter},
             reads=(
-                user("motion", channels=2),
+                user("motion", channels=inputs.motion),
                 access(self.guide(inputs), taps={"depth": grid(1)}),
                 self.age(inputs),
                 access(picture, "picture", {"color": grid(1)}),

@@ -151,11 +151,12 @@ def safe_surface(normal: Array, depth: Array) -> tuple[Array, Array]:
 
 
 def safe_motion(motion: Array) -> Array:
-    """Section 2: (H, W, 2) or (H, W, 3) to (H, W, 3), clamped; far outside the image where it is not finite."""
+    """Section 2: (H, W, 2) or (H, W, 3) to (H, W, 3), clamped; far outside the image where it leads nowhere."""
     if motion.shape[-1] == 2:
         motion = np.concatenate((motion, np.zeros_like(motion[..., :1])), axis=-1)
     bound = np.array((MOTION_MAX, MOTION_MAX, np.inf))
-    return np.where(finite(motion), np.clip(motion, -bound, bound), NO_HISTORY)
+    good = finite(motion) & (np.abs(motion[..., 2:]) <= DEPTH_RANGE[1])
+    return np.where(good, np.clip(motion, -bound, bound), NO_HISTORY)
 
 
 def consistent(x: Indices, y: Indices, guides: Guides, previous: Guides, settings: TemporalFilter) -> Mask:

@@ -12,6 +12,7 @@ from svgf_cl.device.buffers import Buffers
 from svgf_cl.device.layout import Layout
 from svgf_cl.device.memory_plan import memory_slots
 from svgf_cl.filters.pipeline import Buffer, Life
+from svgf_cl.filters.temporal import UNKNOWN
 from tests.faults import failing
 from tests.frames import FULL, SHAPE, bumpy_sequence
 
@@ -47,11 +48,11 @@ def test_all_is_zero_at_first(buffers: Buffers) -> None:
 
 
 def test_what_is_forgotten_says_so_and_the_rest_stays(buffers: Buffers, queue: cl.CommandQueue) -> None:
-    """The antialiased picture is NaN; kernels go by the frame's number for the rest, as a cut shall cost little."""
+    """The antialiased picture is unknown; kernels go by the frame's number for the rest, as a cut shall cost little."""
     for buffer in EVERY:
         write(queue, buffers[buffer], 7)
     buffers.forget(PIPELINE.lasting)
-    assert_array_equal(buffers.read(before("antialiased"))[: 3 * LAYOUT.plane], np.nan)
+    assert_array_equal(buffers.read(before("antialiased"))[: 3 * LAYOUT.plane], np.float32(UNKNOWN))
     for buffer in (before("guide"), LASTING["moments"], LASTING["level_1"], now("guide"), now("antialiased")):
         assert_array_equal(buffers.read(buffer), 7)
 
