@@ -32,7 +32,7 @@ def assert_is_a_picture(out: np.ndarray, shape: Shape) -> None:
     assert np.isfinite(out).all()
 
 
-@effort(8)
+@effort(5)
 @given(
     data=st.data(),
     shape=calls.shapes,
@@ -75,7 +75,7 @@ def any_settings(of: type[Filter]) -> st.SearchStrategy[Filter]:
 
 
 @pytest.mark.parametrize("name", FILTERS)
-@effort(5)
+@effort(3)
 @given(data=st.data(), shape=calls.shapes, wild=st.booleans(), seed=calls.seeds)
 def test_any_settings_give_a_picture(name: str, data: st.DataObject, shape: Shape, wild: bool, seed: int) -> None:
     chosen = data.draw(any_settings(FILTERS[name]))
