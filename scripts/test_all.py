@@ -26,11 +26,12 @@ ON_A_DEVICE = (
     "tests/svgf_cl/oracle/test_accuracy.py",
 )
 # The kernels in all their variants.
-KERNELS = ("tests/kernels", TRACED, "tests/hard/test_variants.py", "-k", "follows_the_oracle or oclgrind")
+VARIANTS = ("tests/kernels", "tests/hard/test_variants.py", "-k", "follows_the_oracle or oclgrind")
+KERNELS = (TRACED, *VARIANTS)
 SUITES = {
     "PoCL": ("tests",),
-    # A simulator takes a millisecond and more for every pixel of a frame.
-    "Oclgrind": ("-p", "tests.oclgrind", "tests/test_oclgrind.py", *KERNELS),
+    # A simulator takes a millisecond and more for every pixel of a frame, and traced ones have many.
+    "Oclgrind": ("-p", "tests.oclgrind", "tests/test_oclgrind.py", *VARIANTS),
 }
 # It has 2 GiB of memory, and takes minutes for 10 000 frames.
 LEFT_OUT = {"rusticl": ("-k", "not 8k_follows and not 10000_frames")}
