@@ -53,12 +53,6 @@ INLINE Means divided(Means m) {
     return m;
 }
 
-// Where the exponential has levelled off nothing is left: even so faint, the square of light of 1e10 would show.
-INLINE floatv tap_share(Facet f, floatv scale, float log2_h, floatv z, const floatv *normal) {
-    const floatv w = weight(facet_exponent(f, scale, log2_h, z, normal));
-    return where((z > 0.0f) & (w > FAINTEST), w, (floatv)(0.0f));
-}
-
 // Every second pixel, and those to the right of them.
 typedef struct {
     floatv side[2];

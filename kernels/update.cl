@@ -125,8 +125,8 @@ INLINE Corrections direct(const int4 size, int here, Facet facet, float threshol
             load_normals(size, tap, guide, normal);
             const floatv z = load(SHARED_PLANE(size, guide, GUIDE_DEPTH) + tap);
             const intv known = is_known(load(PLANE(size, innovation, INNOVATION_RESIDUAL, 0, 0) + tap));
-            floatv w = weight(facet_exponent(facet, depth_scale(facet, dx, dy), 0.0f, z, normal));
-            w = where((z > 0.0f) & known & (w > FAINTEST), w, (floatv)(0.0f));
+            floatv w = tap_share(facet, depth_scale(facet, dx, dy), 0.0f, z, normal);
+            w = where(known, w, (floatv)(0.0f));
             sum.weight += w;
             squares += w * w;
             UNROLLED_FOR(s, SIGNALS) {
