@@ -41,9 +41,6 @@ typedef struct {
 // exponent `e` of a tap that of w_l or w_c for its light, red, luminance and blue.
 #if GUIDED_BY_VARIANCE
 #define SIGMA_LIGHT sigma_luminance
-#define RELATIVE_TOLERANCE 1e-3f  // of luminance, whatever its variance; relative, so that exposure does not matter
-#define LEAST_TOLERANCE 1e-12f    // where all is black
-#define GAUSS(d) ((d) ? 0.25f : 0.5f)
 
 typedef struct {
     floatv luminance, scale;
@@ -59,33 +56,14 @@ INLINE floatv compared(Level level, int s, floatv luminance, int i) {
 #endif
 }
 
-// 3x3 Gaussian of the variance over hits, a miss has no variance to give.
-INLINE floatv smooth_variance(const int4 size, int here, __global const float *depth,
-                              __global const light_t *variance) {
-    floatv sum = (floatv)(0.0f), total = (floatv)(TINY);
-#pragma unroll
-    for (int dy = -1; dy <= 1; ++dy) {
-#pragma unroll
-        for (int dx = -1; dx <= 1; ++dx) {
-            const int tap = here + dy * size.z + dx;
-            const float gauss = GAUSS(dx) * GAUSS(dy);
-            const floatv w = where(load(depth + tap) > 0.0f, (floatv)(gauss), (floatv)(0.0f));
-            sum += w * load_variance(variance + tap);
-            total += w;
-        }
-    }
-    return sum / total;
-}
-
 INLINE Light light_at(Level level, int s, int here) {
     __global const float *depth = SHARED_PLANE(level.size, level.guide, GUIDE_DEPTH);
     __global const light_t *variance = PLANE(level.size, level.source, ILLUMINATION_VARIANCE, s, 0);
     const floatv own = load_light(PLANE(level.size, level.source, ILLUMINATION_COLOR, s, LIGHT_LUMINANCE) + here);
     const floatv l = compared(level, s, own, here);
-    const floatv deviation = sqrt(smooth_variance(level.size, here, depth, variance));
     Light light;
     light.luminance = l;
-    light.scale = -NEPER / (level.sigma * deviation + RELATIVE_TOLERANCE * l + LEAST_TOLERANCE);
+    light.scale = -NEPER / luminance_tolerance(level.sigma, smooth_variance(level.size, here, depth, variance), l);
     return light;
 }
 

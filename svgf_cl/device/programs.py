@@ -37,6 +37,9 @@ HEADERS = (
 # What only some sources need: another would be compiled again for macros that it has no use for.
 MORE_HEADERS: Mapping[str, tuple[str, ...]] = {
     "temporal": ("motion.clh", "reprojection.clh"),
+    "atrous": ("noise.clh",),
+    "bilateral": ("noise.clh", "features.clh"),
+    "network": ("noise.clh", "features.clh"),
     "predict": ("motion.clh", "reprojection.clh", "innovation.clh"),
     "taa": ("motion.clh",),
     "modulate": ("divisor.clh",),

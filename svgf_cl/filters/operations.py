@@ -7,6 +7,7 @@ taps have in common counts once. The state is steady: what a pass does only wher
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from svgf_cl.filters.signals import Inputs
@@ -111,6 +112,33 @@ def wavelet(inputs: Inputs, taps: int, light: LightOperations) -> float:
     exponent += ALBEDO if inputs.divides_by_albedo else 0  # of w_a
     per_signal = taps * (light.weight + light.sums) + light.once
     return GRADIENT + FACET + taps // 2 * TOLERANCE + taps * exponent + len(inputs.signals) * per_signal
+
+
+def features(inputs: Inputs) -> float:
+    """Section 8: what a tap's depth and normal are compared with, at the pixel itself."""
+    normals = 3 + 4 * (DOT + 2) + 2 + 2 + 2  # times 2; of four neighbours; the smaller; their sum; 1 / psi_n^2
+    return GRADIENT + 5 + normals
+
+
+def feature_distance(inputs: Inputs) -> float:
+    """Section 8: D_z, D_n and w_a of a tap."""
+    return 3 + DOT + 3 + 1 + (ALBEDO if inputs.divides_by_albedo else 0)
+
+
+def scales(inputs: Inputs, taps: Sequence[int], exponential: float) -> float:
+    """Section 8: a cross-bilateral filter of so many taps at each scale, and the risk of each; SBF."""
+    signals = len(inputs.signals)
+    weights = (max(taps) - 1) * (feature_distance(inputs) + 4 + exponential + 2)
+    sums = sum(taps) * (2 + signals * (2 * 3 + 1))
+    return features(inputs) + weights + sums + signals * (2 + len(taps) * (1 + 3 + 2 + 2))
+
+
+def choice(inputs: Inputs, taps: int, candidates: int) -> float:
+    """Section 8: risks smoothed over so many taps beside the middle one, and the least of them; SBF."""
+    signals = len(inputs.signals)
+    exponent = DISTANCE + 1 + 2 * 3 + (ALBEDO if inputs.divides_by_albedo else 0)
+    weights = GRADIENT + FACET + taps // 2 * TOLERANCE + taps * (exponent + EXP["precise"])
+    return weights + signals * candidates * (2 * taps + 1 + 3)
 
 
 def modulate(inputs: Inputs) -> float:

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from svgf_cl.filters.operations import DISTANCE, EXP, SMOOTH_VARIANCE, LightOperations
-from svgf_cl.filters.pipeline import Life, Pass, Pipeline, Quantity, Resource, access
+from svgf_cl.filters.pipeline import Life, Pipeline
 from svgf_cl.filters.signals import Inputs
-from svgf_cl.filters.taps import HERE
 from svgf_cl.filters.wavelet import WaveletFilter
 from svgf_cl.settings import documented, number
 
@@ -56,22 +55,3 @@ class Settings(WaveletFilter):
             *self.last_passes(inputs, steps[-1]),
         )
         return Pipeline(passes, inputs.defines | self.macros | {"GUIDED_BY_VARIANCE": 1, "GUIDED_BY_PAST": 0})
-
-    def illumination(
-        self, inputs: Inputs, name: str, life: Life = Life.SCRATCH, *, variance: str = "", over: str = ""
-    ) -> Resource:
-        """Light and the variance of its luminance."""
-        spread = Quantity("variance", 1, len(inputs.signals), self.variance_format, variance or f"{name}_variance")
-        return Resource(name, "illumination", (self.color(inputs, name), spread), life, over)
-
-    def variance_pass(self, inputs: Inputs, accumulated: Resource) -> Pass:
-        """Variance from the moments or, where history is short, from the neighbours too (section 3)."""
-        guide = self.guide(inputs)  # read where history is short alone, which a steady state does not count
-        return Pass(
-            "variance",
-            "variance",
-            scalars=self.surface_scalars,
-            reads=(access(guide, taps={}), access(self.moments(inputs), taps={"length": HERE, "variance": HERE})),
-            writes=(access(accumulated, "illumination", {"variance": HERE}),),
-            operations=2 + len(inputs.signals),  # a choice by the length, and by whether anything was hit
-        )

@@ -1,4 +1,4 @@
-"""What edge-avoiding a-trous wavelet filters share: the settings that tell surfaces apart, and their levels.
+"""What edge-avoiding a-trous wavelet filters share: their levels.
 
 Equations: docs/algorithm.md, section 4; Dammertz et al. 2010.
 """
@@ -13,14 +13,14 @@ from svgf_cl.filters import operations
 from svgf_cl.filters.operations import LightOperations
 from svgf_cl.filters.pipeline import Number, Pass, Resource, access
 from svgf_cl.filters.signals import Inputs
+from svgf_cl.filters.spatial import SpatialFilter
 from svgf_cl.filters.taps import grid
-from svgf_cl.filters.temporal import TemporalFilter
 from svgf_cl.settings import choice, number
 
 
 @dataclass(frozen=True, kw_only=True)
-class WaveletFilter(TemporalFilter):
-    """A temporal filter whose spatial part is a sequence of a-trous levels; level i has taps 2^(i-1) pixels apart."""
+class WaveletFilter(SpatialFilter):
+    """A filter whose spatial part is a sequence of a-trous levels; level i has taps 2^(i-1) pixels apart."""
 
     iterations: int = number(
         5,
@@ -29,26 +29,6 @@ class WaveletFilter(TemporalFilter):
         reason="A-trous levels; each doubles the filter's reach. 5 as in the paper: taps up to 62 pixels away, enough "
         "for 1 spp.",
     )
-    sigma_depth: float = number(
-        1.0,
-        (1e-3, 1e3),
-        unit="slopes of the surface",
-        reason="Tolerated depth difference in units of the surface's own slope. 1 as in SVGF's paper (section 4.4).",
-    )
-    sigma_normal: float = number(
-        128.0,
-        (16, 1024),
-        unit="1 / (1 - cosine)",
-        reason="How sharply normals are told apart: the weight falls to 1/e at a cosine of 1 - 1/sigma_normal. 128, 7 "
-        "degrees: for such angles the same as SVGF's cosine to the power of 128.",
-    )
-    depth_slope_floor: float = number(
-        1e-3,
-        (1e-6, 1.0),
-        unit="depth per depth and pixel",
-        reason="Least slope that still counts as one surface. 1e-3 bridges rounding and the faint relief of a wall "
-        "that faces the camera, and is far below the step to anything behind it.",
-    )
     taps: str = choice(
         "3x3",
         "5x5",
@@ -56,15 +36,6 @@ class WaveletFilter(TemporalFilter):
         "neighbours. 3x3: over five levels it takes 0.6 of the time and blurs less, 0.8 to 1.3 dB better in an "
         "evenly lit box and as good in Sponza, where it leaves 7 % more flicker (SVGF).",
     )
-    precision: str = choice(
-        "precise",
-        "fast",
-        reason="Weights between pixels: exponentials to 4e-6, or with straight lines between the powers of two, up to "
-        "6 % larger. Fast takes a sixth less time and looks the same, to 0.07 dB; yet single pixels are off "
-        "the exact filter by up to a tenth of the picture's mean. Precise, so that a picture is the same to "
-        "1e-6 wherever it is made.",
-    )
-
     @property
     def radius(self) -> int:
         """Taps of a level to either side of the middle one."""
@@ -73,13 +44,7 @@ class WaveletFilter(TemporalFilter):
     @property
     def macros(self) -> dict[str, int]:
         """What these settings decide when kernels are built."""
-        return super().macros | {"FAST": int(self.precision == "fast"), "RADIUS": self.radius}
-
-    @property
-    def surface_scalars(self) -> dict[str, Number]:
-        """What tells surfaces apart, as kernels take it."""
-        names = ("sigma_depth", "sigma_normal", "albedo_threshold", "depth_slope_floor")
-        return {name: getattr(self, name) for name in names}
+        return super().macros | {"RADIUS": self.radius}
 
     def levels(
         self,

@@ -10,7 +10,8 @@ import numpy as np
 from svgf_cl.filters.eaw import Eaw
 from svgf_cl.oracle.taps import Array, depth_gradient, shifted, square
 from svgf_cl.oracle.temporal import Guides, Made, Stages, TemporalOracle
-from svgf_cl.oracle.wavelet import SPLINES, surface_weight
+from svgf_cl.oracle.spatial import surface_weight
+from svgf_cl.oracle.wavelet import SPLINES
 
 
 def atrous(illumination: Array, guides: Guides, level: int, settings: Eaw) -> Array:

@@ -11,27 +11,8 @@ from svgf_cl.filters.kalman import Kalman
 from svgf_cl.filters.svgf import Settings
 from svgf_cl.oracle.taps import Array, depth_gradient, luminance, shifted, smoothed, square
 from svgf_cl.oracle.temporal import Accumulated, Guides, Made, Stages, TemporalOracle, accumulated
-from svgf_cl.oracle.wavelet import SPLINES, surface_weight
-
-LONG_HISTORY, NEARLY_LONG = 4, 3.5  # frames
-LUMINANCE_TOLERANCE = (1e-3, 1e-12)  # relative, and where all is black
-
-
-def variance(past: Accumulated, guides: Guides, settings: Settings) -> Array:
-    """Section 3: variance of luminance, (S, H, W), from the moments or, where history is short, from 7x7 neighbours."""
-    gradient = depth_gradient(guides.depth)
-    length = past.length
-    taps = []
-    for offset in square(3):
-        y, x, _ = shifted(offset, guides.depth.shape)
-        w = surface_weight(guides, gradient, offset, 1, settings)
-        taps.append((w, past.mean[:, y, x], past.variance[:, y, x]))
-    total = np.where(guides.hit, sum(w for w, _, _ in taps), 1)
-    mean = sum(w * m for w, m, _ in taps) / total
-    pooled = sum(w * (v + (m - mean) ** 2) for w, m, v in taps) / total
-    spatial = LONG_HISTORY / np.maximum(length, 1) * pooled
-    return np.where(guides.hit, np.where(length >= NEARLY_LONG, past.variance, spatial), 0)
-
+from svgf_cl.oracle.spatial import luminance_tolerance, surface_weight, variance
+from svgf_cl.oracle.wavelet import SPLINES
 
 def atrous(
     illumination: Array,
@@ -62,8 +43,7 @@ def atrous(
     luma = luminance(illumination)
     if guidance is not None:
         luma = (luma + guidance) / 2
-    relative, least = LUMINANCE_TOLERANCE
-    tolerance = settings.sigma_luminance * np.sqrt(smoothed(var, guides.hit)) + relative * luma + least
+    tolerance = luminance_tolerance(settings.sigma_luminance, smoothed(var, guides.hit), luma)
     color, squares, total = np.zeros_like(illumination), np.zeros_like(var), np.zeros_like(var)
     spline = SPLINES[settings.radius]
     for dx, dy in square(settings.radius):

@@ -11,7 +11,7 @@ import pytest
 from svgf_cl.device import programs
 from svgf_cl.filters.formats import HALF_MAX
 from svgf_cl.filters.temporal import UNKNOWN
-from svgf_cl.oracle import albedo, kalman, svgf, temporal, wavelet
+from svgf_cl.oracle import albedo, bilateral, kalman, spatial, temporal, wavelet
 
 # By the kernels' name. Where there are two values the second is that of 16-bit floats (HALF_HISTORY), or of 3x3 taps.
 EXPECTED = {
@@ -28,10 +28,12 @@ EXPECTED = {
     "MAX_LENGTH": (temporal.LENGTH_MAX[False], temporal.LENGTH_MAX[True]),
     "FAR": (temporal.MOTION_MAX,),
     "ENOUGH": (temporal.HISTORY_WEIGHT,),
-    "LONG_HISTORY": (svgf.LONG_HISTORY,),
-    "NEARLY_LONG": (svgf.NEARLY_LONG,),
-    "RELATIVE_TOLERANCE": (svgf.LUMINANCE_TOLERANCE[0],),
-    "LEAST_TOLERANCE": (svgf.LUMINANCE_TOLERANCE[1],),
+    "LONG_HISTORY": (spatial.LONG_HISTORY,),
+    "NEARLY_LONG": (spatial.NEARLY_LONG,),
+    "RELATIVE_TOLERANCE": (spatial.LUMINANCE_TOLERANCE[0],),
+    "LEAST_TOLERANCE": (spatial.LUMINANCE_TOLERANCE[1],),
+    "NORMAL_FLOOR": (bilateral.NORMAL_FLOOR,),
+    "NORMAL_MOST": (bilateral.NORMAL_MOST,),
     "MIDDLE": (wavelet.SPLINES[2][0], wavelet.SPLINES[1][0]),
     "NOTHING_KNOWN": (kalman.NOTHING_KNOWN,),
     "RESIDUAL_GAIN": (kalman.RESIDUAL_GAIN,),

@@ -10,7 +10,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from svgf_cl import Settings
 from svgf_cl.frame import Frame
-from svgf_cl.oracle.svgf import Oracle, atrous, variance
+from svgf_cl.oracle.spatial import variance
+from svgf_cl.oracle.svgf import Oracle, atrous
 from svgf_cl.oracle.taps import Array, luminance
 from svgf_cl.oracle.temporal import Accumulated, demodulate, temporal
 from tests.svgf_cl.oracle.scenes import SHAPE, bumpy, guides_of, wall

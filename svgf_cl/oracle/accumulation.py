@@ -1,0 +1,25 @@
+"""Float64 oracle of accumulation over time alone: `svgf_cl.filters.accumulation` restated in NumPy."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import ClassVar
+
+from svgf_cl.filters.accumulation import Accumulation
+from svgf_cl.oracle.temporal import Guides, Made, Stages, TemporalOracle
+
+
+class Oracle(TemporalOracle[Accumulation]):
+    """Accumulation over a sequence."""
+
+    history: ClassVar[str] = "accumulated"
+
+    @property
+    def alpha_moments(self) -> float:
+        """As colour; nothing reads the moments."""
+        return self.settings.alpha_color
+
+    def spatial(self, now: Stages, guides: Guides) -> Generator[Made, None, str]:
+        """Nothing."""
+        yield from ()
+        return "accumulated"
