@@ -133,6 +133,25 @@ def scales(inputs: Inputs, taps: Sequence[int], exponential: float) -> float:
     return features(inputs) + weights + sums + signals * (2 + len(taps) * (1 + 3 + 2 + 2))
 
 
+def window(inputs: Inputs, taps: int, exponential: float) -> float:
+    """Section 8: a cross-bilateral filter of so many taps beside the middle one, with parameters of its own; LBF."""
+    signals = len(inputs.signals)
+    weight = 2 + 1 + 4 * 2 + exponential + 2  # D_l; the exponent
+    once = SMOOTH_VARIANCE + 3 + 1 + 3
+    return features(inputs) + taps * (feature_distance(inputs) + signals * (weight + 2 * 3 + 1)) + signals * once
+
+
+def network(inputs: Inputs, taps: int, layers: tuple[int, int, int]) -> float:
+    """Section 8: statistics of four features over so many taps, and the layers of the network; LBF."""
+    sees, hidden, makes = layers
+    channels = 1 + 1 + 3 + (1 if inputs.divides_by_albedo else 0)
+    sums = taps * (2 + channels * (1 + 1 + 2 + 2)) + 9 * channels * (1 + 2 + 2)
+    squashing = sees * (1 + 1 + 1 + 1) + hidden * 3
+    return len(inputs.signals) * (
+        sums + squashing + 2 * sees * hidden + 2 * hidden * makes + SMOOTH_VARIANCE + makes * (2 + EXP["precise"])
+    )
+
+
 def choice(inputs: Inputs, taps: int, candidates: int) -> float:
     """Section 8: risks smoothed over so many taps beside the middle one, and the least of them; SBF."""
     signals = len(inputs.signals)

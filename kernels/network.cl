@@ -1,0 +1,192 @@
+// LBF's network: from statistics of a pixel's neighbourhood to the parameters of the bilateral filter there.
+//
+//   statistics of l (over its mean in 7x7), z (over z), n and albedo (octaves), of 3x3 and of 7x7 pixels that show
+//   something:  deviation, mean |f' - f|, mean f' - f (of n its length);  then the gradient's length
+//   sqrt(Var) and sqrt(gauss3x3(Var)) over the mean of l;  1 / N
+//   x = statistic / (|statistic| + halfway), 1 / N as it is
+//   h = b + W x;  p = 2^clamp(c + V h / (1 + |h|))
+//
+// in   guide;  source: colour, variance;  moments: N;  network: W by columns, b, V by columns, c
+// out  parameters: p, each in octaves of weight (bilateral.cl); 0 where nothing was hit
+// Kalantari et al. 2015, section 4. All statistics are free of scale and exposure.
+
+#define NEAR 1  // 3x3 taps
+#define WIDE 3  // 7x7 taps
+
+// The features, in the order of their statistics, and how many they have each.
+enum { LIGHT = 0, DEPTH = 1, NORMAL = 2, ALBEDO = 3, FEATURES = 4 };
+#define STATISTICS 7
+#define CHANNELS_OF(feature) ((feature) == NORMAL ? 3 : 1)
+
+// Where a statistic counts 1/2: of light, depth, normal, albedo; and of noise.
+#define HALFWAY_OF(feature) \
+    ((feature) == LIGHT ? 0.3f : (feature) == DEPTH ? 0.01f : (feature) == NORMAL ? 0.1f : 0.5f)
+#define HALFWAY_NOISE 1.0f
+#define LEAST_POWER (-24.0f)  // of two, that a parameter may be
+#define GREATEST_POWER 10.0f
+#define BLACK 1e-12f  // is added to the mean of light, which others are divided by
+
+// Where a feature's values are.
+typedef struct {
+    int4 size;
+    __global const float *guide;
+    __global const light_t *luminance;
+} Planes;
+
+// Of one signal: the layer before it bends.
+typedef struct {
+    floatv hidden[HIDDEN];
+    __global const float *network;
+} Layer;
+
+INLINE void see(Layer *layer, int input, floatv x) {
+    UNROLLED_FOR(j, HIDDEN) layer->hidden[j] += layer->network[input * HIDDEN + j] * x;
+}
+
+INLINE floatv squashed(floatv value, float halfway) { return value / (fabs(value) + halfway); }
+
+INLINE floatv depth_at(Planes planes, int i) { return load(SHARED_PLANE(planes.size, planes.guide, GUIDE_DEPTH) + i); }
+
+// Channel `k` of a feature; albedo in octaves, the mean of its channels.
+INLINE floatv feature_at(Planes planes, int feature, int k, int i) {
+    if (feature == LIGHT) return load_light(planes.luminance + i);
+    if (feature == DEPTH) return depth_at(planes, i);
+    if (feature == NORMAL) return load_normal(normal_plane(planes.size, planes.guide, k) + i) * (1.0f / UNIT);
+#if HAS_ALBEDO
+    const intv code = load_int(albedo_plane(planes.size, planes.guide) + i);
+    intv octaves = (intv)(0);
+    UNROLLED_FOR(field, 3) octaves += (code >> (field * FIELD_BITS)) & GREATEST_FIELD;
+    return to_float(octaves) * (1.0f / (3.0f * STEPS));
+#else
+    return (floatv)(0.0f);
+#endif
+}
+
+// Sums over one neighbourhood: differences of each channel from the pixel's own, their squares and magnitudes.
+typedef struct {
+    floatv first[3], second, absolute, taps;
+} Sums;
+
+INLINE void add_differences(Sums *sums, const floatv *difference, floatv seen, int channels) {
+    sums->taps += seen;
+    UNROLLED_FOR(k, channels) {
+        sums->first[k] += difference[k];
+        sums->second += difference[k] * difference[k];
+        sums->absolute += fabs(difference[k]);
+    }
+}
+
+// `scale`: 1 over what the feature counts against.
+INLINE void see_sums(Layer *layer, int input, Sums sums, int feature, floatv scale) {
+    const floatv share = 1.0f / sums.taps;
+    floatv squared_mean = (floatv)(0.0f);
+    UNROLLED_FOR(k, CHANNELS_OF(feature)) squared_mean += (sums.first[k] * share) * (sums.first[k] * share);
+    const floatv deviation = sqrt(max(sums.second * share - squared_mean, (floatv)(0.0f)));
+    const floatv mean = feature == NORMAL ? sqrt(squared_mean) : sums.first[0] * share;
+    see(layer, input, squashed(deviation * scale, HALFWAY_OF(feature)));
+    see(layer, input + 1, squashed(sums.absolute * share * scale, HALFWAY_OF(feature)));
+    see(layer, input + 2, squashed(mean * scale, HALFWAY_OF(feature)));
+}
+
+// Square of half the difference of a feature between two taps, where both show something.
+INLINE floatv squared_difference(Planes planes, int feature, int behind, int ahead) {
+    floatv squares = (floatv)(0.0f);
+    UNROLLED_FOR(k, CHANNELS_OF(feature)) {
+        const floatv slope = 0.5f * (feature_at(planes, feature, k, ahead) - feature_at(planes, feature, k, behind));
+        squares += slope * slope;
+    }
+    const intv seen = (depth_at(planes, behind) > 0.0f) & (depth_at(planes, ahead) > 0.0f);
+    return where(seen, squares, (floatv)(0.0f));
+}
+
+INLINE Sums no_sums(void) {
+    Sums sums;
+    UNROLLED_FOR(k, 3) sums.first[k] = (floatv)(0.0f);
+    sums.second = sums.absolute = (floatv)(0.0f);
+    sums.taps = (floatv)(TINY);
+    return sums;
+}
+
+INLINE void see_feature(Layer *layer, int feature, Planes planes, int here, floatv scale) {
+    const int input = feature * STATISTICS, channels = CHANNELS_OF(feature);
+    Sums near = no_sums(), wide = no_sums();
+    floatv own[3];
+    UNROLLED_FOR(k, channels) own[k] = feature_at(planes, feature, k, here);
+    for (int dy = -WIDE; dy <= WIDE; ++dy) {
+        for (int dx = -WIDE; dx <= WIDE; ++dx) {
+            const int tap = here + dy * planes.size.z + dx;
+            const floatv seen = where(depth_at(planes, tap) > 0.0f, (floatv)(1.0f), (floatv)(0.0f));
+            floatv difference[3];
+            UNROLLED_FOR(k, channels) difference[k] = seen * (feature_at(planes, feature, k, tap) - own[k]);
+            add_differences(&wide, difference, seen, channels);
+            if (max(abs(dx), abs(dy)) <= NEAR) add_differences(&near, difference, seen, channels);
+        }
+    }
+    see_sums(layer, input, near, feature, scale);
+    see_sums(layer, input + 3, wide, feature, scale);
+    const floatv gradient = squared_difference(planes, feature, here - 1, here + 1) +
+                         squared_difference(planes, feature, here - planes.size.z, here + planes.size.z);
+    see(layer, input + STATISTICS - 1, squashed(sqrt(gradient) * scale, HALFWAY_OF(feature)));
+}
+
+// Mean luminance of the wide neighbourhood.
+INLINE floatv mean_light(Planes planes, int here) {
+    floatv sum = (floatv)(0.0f), taps = (floatv)(TINY);
+    for (int dy = -WIDE; dy <= WIDE; ++dy) {
+        for (int dx = -WIDE; dx <= WIDE; ++dx) {
+            const int tap = here + dy * planes.size.z + dx;
+            const floatv seen = where(depth_at(planes, tap) > 0.0f, (floatv)(1.0f), (floatv)(0.0f));
+            sum += seen * load_light(planes.luminance + tap);
+            taps += seen;
+        }
+    }
+    return sum / taps;
+}
+
+// The second layer: parameters from the first.
+INLINE void put_parameters(Layer layer, const int4 size, int s, int here, intv hit, __global float *parameters) {
+    UNROLLED_FOR(j, HIDDEN) {
+        const floatv h = layer.hidden[j] + layer.network[INPUTS * HIDDEN + j];
+        layer.hidden[j] = h / (1.0f + fabs(h));
+    }
+    __global const float *second = layer.network + (INPUTS + 1) * HIDDEN;
+    UNROLLED_FOR(k, PARAMETERS_EXPONENTS_CHANNELS) {
+        floatv power = (floatv)(second[HIDDEN * PARAMETERS_EXPONENTS_CHANNELS + k]);
+        UNROLLED_FOR(j, HIDDEN) power += second[j * PARAMETERS_EXPONENTS_CHANNELS + k] * layer.hidden[j];
+        const floatv made = weight(ONE + OCTAVE * clamp(power, LEAST_POWER, GREATEST_POWER));
+        store(where(hit, made, (floatv)(0.0f)), PLANE(size, parameters, PARAMETERS_EXPONENTS, s, k) + here);
+    }
+}
+
+KERNEL network(const int4 size, __global const float *restrict network, __global const float *restrict guide,
+               __global const light_t *restrict source, __global const light_t *restrict moments,
+               __global float *restrict parameters) {
+    const int x = first_column(), y = row();
+    if (x >= size.x || y >= size.y) return;
+    const int here = at(size, x, y);
+    __global const float *depth = SHARED_PLANE(size, guide, GUIDE_DEPTH);
+    const floatv z = load(depth + here), frames = load_light(SHARED_PLANE(size, moments, MOMENTS_LENGTH) + here);
+    UNROLLED_FOR(s, SIGNALS) {
+        Planes planes;
+        planes.size = size;
+        planes.guide = guide;
+        planes.luminance = PLANE(size, source, ILLUMINATION_COLOR, s, LIGHT_LUMINANCE);
+        Layer layer;
+        layer.network = network;
+        UNROLLED_FOR(j, HIDDEN) layer.hidden[j] = (floatv)(0.0f);
+
+        const floatv by_light = 1.0f / (mean_light(planes, here) + BLACK);
+        see_feature(&layer, LIGHT, planes, here, by_light);
+        see_feature(&layer, DEPTH, planes, here, 1.0f / max(z, (floatv)(TINY)));
+        see_feature(&layer, NORMAL, planes, here, (floatv)(1.0f));
+#if HAS_ALBEDO
+        see_feature(&layer, ALBEDO, planes, here, (floatv)(1.0f));  // without it all its statistics are 0
+#endif
+        __global const light_t *variance = PLANE(size, source, ILLUMINATION_VARIANCE, s, 0);
+        const floatv own = load_variance(variance + here), around = smooth_variance(size, here, depth, variance);
+        see(&layer, FEATURES * STATISTICS, squashed(sqrt(own) * by_light, HALFWAY_NOISE));
+        see(&layer, FEATURES * STATISTICS + 1, squashed(sqrt(around) * by_light, HALFWAY_NOISE));
+        see(&layer, FEATURES * STATISTICS + 2, 1.0f / max(frames, (floatv)(1.0f)));
+        put_parameters(layer, size, s, here, z > 0.0f, parameters);
+    }
+}
