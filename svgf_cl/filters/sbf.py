@@ -78,7 +78,9 @@ class Sbf(BilateralFilter):
                 access(self.moments(inputs), taps={"length": HERE}),
             ),
             writes=tuple(map(access, candidates)),
-            operations=operations.scales(inputs, [(2 * int(2 * sigma) + 1) ** 2 for sigma in SIGMAS], EXP[self.precision]),
+            operations=operations.scales(
+                inputs, [(2 * int(2 * sigma) + 1) ** 2 for sigma in SIGMAS], EXP[self.precision]
+            ),
         )
 
     def select_pass(self, inputs: Inputs, candidates: tuple[Resource, ...]) -> Pass:

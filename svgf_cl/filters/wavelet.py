@@ -36,6 +36,7 @@ class WaveletFilter(SpatialFilter):
         "neighbours. 3x3: over five levels it takes 0.6 of the time and blurs less, 0.8 to 1.3 dB better in an "
         "evenly lit box and as good in Sponza, where it leaves 7 % more flicker (SVGF).",
     )
+
     @property
     def radius(self) -> int:
         """Taps of a level to either side of the middle one."""

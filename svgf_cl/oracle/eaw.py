@@ -8,9 +8,9 @@ from typing import ClassVar
 import numpy as np
 
 from svgf_cl.filters.eaw import Eaw
+from svgf_cl.oracle.spatial import surface_weight
 from svgf_cl.oracle.taps import Array, depth_gradient, shifted, square
 from svgf_cl.oracle.temporal import Guides, Made, Stages, TemporalOracle
-from svgf_cl.oracle.spatial import surface_weight
 from svgf_cl.oracle.wavelet import SPLINES
 
 

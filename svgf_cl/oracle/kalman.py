@@ -11,10 +11,10 @@ import numpy as np
 
 from svgf_cl.filters.kalman import Kalman
 from svgf_cl.frame import LUMINANCE
+from svgf_cl.oracle.spatial import Facets, Tolerance, facet_weight, same_albedo
 from svgf_cl.oracle.svgf import atrous
 from svgf_cl.oracle.taps import GAUSSIAN, Array, Offset, depth_gradient, luminance, shifted, square
 from svgf_cl.oracle.temporal import LENGTH_MAX, FilterOracle, Guides, Made, Past, Stages, footprint
-from svgf_cl.oracle.spatial import Facets, Tolerance, facet_weight, same_albedo
 
 RESIDUAL_GAIN = 0.3
 LEAST_SPREAD = 1e-3  # of a residual, relative to S

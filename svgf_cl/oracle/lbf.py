@@ -18,18 +18,21 @@ from svgf_cl.oracle.temporal import Guides, Made, Stages, TemporalOracle, accumu
 WINDOW = 10  # pixels to either side, of the filter
 NEAR, WIDE = 1, 3  # pixels to either side, of the neighbourhoods that statistics are of
 HALFWAY = {"light": 0.3, "depth": 0.01, "normal": 0.1, "albedo": 0.5, "noise": 1.0}  # where a statistic counts 1/2
+BLACK = 1e-12  # is added to the mean of light, which others are divided by
 EXPONENTS = (-24.0, 10.0)  # of the powers of two that parameters are
 
 
 def squashed(value: Array, halfway: float) -> Array:
-    """x / (|x| + halfway): -1..1."""
+    """X / (|x| + halfway): -1..1."""
     result: Array = value / (np.abs(value) + halfway)
     return result
 
 
 def features(light: Array, guides: Guides) -> dict[str, Array]:
     """What statistics are of, by name, each (S or 1, H, W, channels); albedo in octaves, the mean of its channels."""
-    octaves = np.zeros(guides.depth.shape) if guides.albedo is None else albedo_codes(guides.albedo).mean(axis=-1) / OCTAVE
+    octaves = (
+        np.zeros(guides.depth.shape) if guides.albedo is None else albedo_codes(guides.albedo).mean(axis=-1) / OCTAVE
+    )
     return {
         "light": luminance(light)[..., None],
         "depth": guides.depth[None, ..., None],
@@ -65,13 +68,13 @@ def gradient_of(values: Array, guides: Guides) -> Array:
     """Length of the central difference per pixel, 0 along an axis where a neighbour shows nothing: (S, H, W)."""
     squares = np.zeros(values.shape[:-1])
     for axis in ((1, 0), (0, 1)):
-        (ahead, seen), (behind, too) = (one(values, guides, (sign * axis[0], sign * axis[1])) for sign in (1, -1))
+        (ahead, seen), (behind, too) = (tap(values, guides, (sign * axis[0], sign * axis[1])) for sign in (1, -1))
         along = np.where((seen * too)[..., None] > 0, (ahead - behind) / 2, 0)
         squares += np.square(along).sum(axis=-1)
     return np.sqrt(squares)
 
 
-def one(values: Array, guides: Guides, offset: Offset) -> tuple[Array, Array]:
+def tap(values: Array, guides: Guides, offset: Offset) -> tuple[Array, Array]:
     """Difference of one tap, and whether both show something."""
     y, x, inside = shifted(offset, guides.depth.shape)
     return values[:, y, x] - values, (inside & guides.hit & guides.hit[y, x]).astype(np.float64)
@@ -88,11 +91,10 @@ def statistics(light: Array, noise: Array, length: Array, guides: Guides) -> Arr
     guides : Guides
     """
     found: list[Array] = []
-    signals = len(light)
-    tiny = 1e-12
     _, _, off = spread(luminance(light)[..., None], guides, WIDE)
-    mean = luminance(light) + off[..., 0] + tiny
-    units = {"light": mean, "depth": np.where(guides.hit, guides.depth, 1)[None], "normal": 1.0, "albedo": 1.0}
+    mean = luminance(light) + off[..., 0] + BLACK
+    one = np.ones(1)
+    units = {"light": mean, "depth": np.where(guides.hit, guides.depth, 1)[None], "normal": one, "albedo": one}
     for name, values in features(light, guides).items():
         unit, halfway = units[name], HALFWAY[name]
         for radius in (NEAR, WIDE):
@@ -103,7 +105,7 @@ def statistics(light: Array, noise: Array, length: Array, guides: Guides) -> Arr
     for each in (noise, smoothed(noise, guides.hit)):
         found.append(squashed(np.sqrt(each) / mean, HALFWAY["noise"]))
     found.append((1 / np.maximum(length, 1))[None])
-    return np.stack([np.broadcast_to(each, (signals, *guides.depth.shape)) for each in found], axis=-1)
+    return np.stack([np.broadcast_to(each, (len(light), *guides.depth.shape)) for each in found], axis=-1)
 
 
 def parameters(seen: Array, network: Network) -> Array:
@@ -126,8 +128,10 @@ def filtered(light: Array, noise: Array, chosen: Array, guides: Guides, settings
         y, x, _ = shifted(offset, guides.depth.shape)
         d_z, d_n = surface_distance(guides, deviations, offset)
         d_l = np.square((luma - luma[:, y, x]) / tolerance)
-        distances = (float(np.dot(offset, offset)), d_z, d_n, d_l)
-        exponent = sum(chosen[..., k] * distance for k, distance in enumerate(distances))
+        distances = (np.full_like(d_z, np.dot(offset, offset)), d_z, d_n, d_l)
+        exponent = np.zeros_like(luma)
+        for k, distance in enumerate(distances):
+            exponent += chosen[..., k] * distance
         w = np.where(counts(guides, offset, settings), np.exp2(-exponent), 0)
         color += w[..., None] * light[:, y, x]
         total += w

@@ -18,7 +18,7 @@ SMOOTHED = 3  # pixels to either side, of the risk
 
 
 def scale(light: Array, guides: Guides, sigma: float, settings: Sbf) -> tuple[Array, Array]:
-    """Section 8: light (S, H, W, 3) filtered at one scale, and the sum of the weights, (H, W), of which its own is 1."""
+    """Section 8: light (S, H, W, 3) filtered at one scale, and the sum of weights, (H, W); its own is 1."""
     deviations = Deviations.of(guides, settings.depth_slope_floor)
     color, total = light.copy(), np.ones(guides.depth.shape)
     for offset in square(int(2 * sigma)):
@@ -52,7 +52,8 @@ def smoothed_over_surface(values: Array, guides: Guides, settings: Sbf) -> Array
 def chosen(scales: Sequence[Array], risks: Sequence[Array], guides: Guides, settings: Sbf) -> Array:
     """The light (S, H, W, 3) of the scale whose smoothed risk is least; the smaller scale of two that are equal."""
     best = np.argmin([smoothed_over_surface(each, guides, settings) for each in risks], axis=0)
-    return np.take_along_axis(np.stack(scales), best[None, ..., None], axis=0)[0]
+    light: Array = np.take_along_axis(np.stack(scales), best[None, ..., None], axis=0)[0]
+    return light
 
 
 class Oracle(TemporalOracle[Sbf]):

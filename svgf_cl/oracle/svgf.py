@@ -9,10 +9,11 @@ import numpy as np
 
 from svgf_cl.filters.kalman import Kalman
 from svgf_cl.filters.svgf import Settings
-from svgf_cl.oracle.taps import Array, depth_gradient, luminance, shifted, smoothed, square
-from svgf_cl.oracle.temporal import Accumulated, Guides, Made, Stages, TemporalOracle, accumulated
 from svgf_cl.oracle.spatial import luminance_tolerance, surface_weight, variance
+from svgf_cl.oracle.taps import Array, depth_gradient, luminance, shifted, smoothed, square
+from svgf_cl.oracle.temporal import Guides, Made, Stages, TemporalOracle, accumulated
 from svgf_cl.oracle.wavelet import SPLINES
+
 
 def atrous(
     illumination: Array,

@@ -13,9 +13,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from svgf_cl import Denoiser, Eaw, Frame
 from svgf_cl.oracle.eaw import Oracle
+from svgf_cl.oracle.spatial import surface_weight
 from svgf_cl.oracle.taps import depth_gradient, shifted, square
 from svgf_cl.oracle.temporal import demodulate
-from svgf_cl.oracle.spatial import surface_weight
 from tests import denoising
 from tests.frames import SHAPE, SPLIT, bumpy, bumpy_sequence, noise, only, wall
 from tests.oracle import EAW_CASES, TOLERANCES, assert_case_follows_oracle, measured

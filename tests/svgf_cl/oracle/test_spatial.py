@@ -7,8 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from svgf_cl import Settings
-from svgf_cl.oracle.taps import depth_gradient, shifted
 from svgf_cl.oracle.spatial import surface_weight
+from svgf_cl.oracle.taps import depth_gradient, shifted
 from tests.frames import FACING
 from tests.svgf_cl.oracle.scenes import SHAPE, guides_of, wall
 
