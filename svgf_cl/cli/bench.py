@@ -79,8 +79,8 @@ def bench(
       svgf-cl bench --only 'frame|enqueue' --size 1280x720
       svgf-cl bench --output out/bench
       svgf-cl bench --only atrous --compare out/bench/results.json
-      svgf-cl bench --no-ceilings --json before.json
-      svgf-cl bench --no-ceilings --compare before.json --fail-above 1.10 --junit out/bench.xml
+      svgf-cl bench --compare out/bench/results.json --fail-above 1.10 --junit out/bench.xml
+      svgf-cl bench --no-ceilings --json - > results.json
       svgf-cl bench --list --only 1280x720
     """
     try:
