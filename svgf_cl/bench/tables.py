@@ -32,7 +32,7 @@ def device_table(run: Run) -> Table:
     """What was timed on, a column each: ceilings measured in the same run, if any, and the error."""
     described = [describe(device) for device in run.devices]
     rows = [(what, *(facts[what] for facts in described)) for what in described[0]]
-    title = "ceilings measured in the same run, and the error" if run.has_ceilings else "the error"
+    title = "ceilings measured in the same run, and the error" if run.has_ceilings else "devices, and the error"
     return Table(title, ("", *(device.platform for device in run.devices)), rows)
 
 

@@ -37,7 +37,7 @@ def test_columns_in_which_nothing_was_measured_are_left_out() -> None:
 
 def test_without_ceilings_no_rooflines() -> None:
     bare = run(result("temporal", "event", 1.0), devices=(device(ceilings=None),))
-    assert device_table(bare).title == "the error"
+    assert device_table(bare).title == "devices, and the error"
     assert [what for what, _ in device_table(bare).rows][4:6] == ["tuning", "error to the float64 oracle, rms"]
     assert benchmark_table(bare, bare.devices[0]).columns == ("benchmark", "event ms", "rounds")
 
