@@ -77,7 +77,7 @@ def write(run: Run, folder: Path, more: list[Section]) -> None:
     """Write results and report."""
     run.write(folder / "results.json")
     held = bars.bar_table(run.results, run.platforms)
-    report.write(run, folder, first=[Section("Bars", tables=[held])] if held.rows else (), more=more)
+    report.write(run, folder, first=[Section("Bars", tables=[held])], more=more)
 
 
 def main() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from typing import Any
@@ -23,6 +23,7 @@ GPU_ITEMS, CPU_ITEMS = 2048, 8
 COMPUTED = 4e-3  # seconds of a sample of loads or multiply-adds
 TRIES = 9  # to find out how many those are; the first ones are slow
 ALIGNED, OFFSET = 0, 1  # floats that a load begins off where vectors do
+SAMPLES = 3  # of each, every time
 
 
 @dataclass(frozen=True)
@@ -121,3 +122,46 @@ class CeilingBench:
         event = kernel(self._queue, (self._items,), (self._group,), *arguments)
         event.wait()
         return 1e-9 * float(event.profile.end - event.profile.start)
+
+
+class CeilingSamples:
+    """What was sampled of one device's ceilings.
+
+    Parameters
+    ----------
+    queue : pyopencl.CommandQueue
+        With profiling.
+    """
+
+    def __init__(self, queue: cl.CommandQueue) -> None:
+        self._bench = CeilingBench(queue)
+        self._copies: dict[int, list[float]] = {size: [] for size in self._bench.working_sets}
+        self._loads: dict[int, list[float]] = {ALIGNED: [], OFFSET: []}
+        self._multiplications: list[float] = []
+
+    def sample(self) -> None:
+        """Take a few samples of each."""
+        for _ in range(SAMPLES):
+            for size, samples in self._copies.items():
+                samples.append(self._bench.copy(size))
+            for offset, samples in self._loads.items():
+                samples.append(self._bench.load(offset))
+            self._multiplications.append(self._bench.multiply())
+
+    @property
+    def ceilings(self) -> Ceilings:
+        """The limits, by the fastest samples."""
+        return Ceilings(
+            bandwidth=[(size, size / min(samples)) for size, samples in self._copies.items()],
+            aligned_loads=self._bench.loaded / min(self._loads[ALIGNED]),
+            offset_loads=self._bench.loaded / min(self._loads[OFFSET]),
+            flops=self._bench.operations / min(self._multiplications),
+        )
+
+    def named(self) -> Iterator[tuple[str, list[float], dict[str, int]]]:
+        """Each benchmark's name, its samples in s, and what a sample moves or computes."""
+        for size, seconds in self._copies.items():
+            yield f"ceiling.copy.{size}", seconds, {"bytes": size}
+        for offset, seconds in self._loads.items():
+            yield f"ceiling.load.{offset}", seconds, {"bytes": self._bench.loaded}
+        yield "ceiling.multiply", self._multiplications, {"flops": self._bench.operations}

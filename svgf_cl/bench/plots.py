@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from svgf_cl.bench.ceilings import Ceilings
 from svgf_cl.bench.results import DeviceRecord, Result, Run
 from svgf_cl.bench.rig import EVENT
 from svgf_cl.bench.scaling import Series, series
@@ -24,8 +25,8 @@ def plots(run: Run) -> dict[str, Draw]:
     if bars := frame_parts(run):
         found["A frame, pass by pass"] = lambda axes: draw_frames(axes, bars)
     for device in run.devices:
-        if rows := roofline_rows(run, device):
-            found[f"Roofline: {device.platform}"] = bind(draw_roofline, device, rows)
+        if device.ceilings and (rows := roofline_rows(run, device)):
+            found[f"Roofline: {device.platform}"] = bind(draw_roofline, device.ceilings, rows)
     for over, draw in (("pixels", draw_pixels), ("iterations", draw_iterations), ("cores", draw_cores)):
         if lines := series(run, over):
             found[f"Scaling over {over}"] = bind(draw, lines)
@@ -73,14 +74,14 @@ def roofline_rows(run: Run, device: DeviceRecord) -> list[Result]:
     return [r for r in found if r.facts["width"] * r.facts["height"] == largest]
 
 
-def draw_roofline(axes: Axes, device: DeviceRecord, rows: Sequence[Result]) -> None:
+def draw_roofline(axes: Axes, ceilings: Ceilings, rows: Sequence[Result]) -> None:
     """Operations per second over operations per byte, below the roof of bandwidth and peak."""
     intensity = np.logspace(-1.5, 2.5, 100)
-    peak = device.flops
+    peak = ceilings.flops
     working_set = rows[0].facts["bytes"]
     roofs = {
-        "copy, in cache": max(speed for _, speed in device.bandwidth),
-        "copy, out of cache": device.ceilings.bandwidth_at(working_set),
+        "copy, in cache": max(speed for _, speed in ceilings.bandwidth),
+        "copy, out of cache": ceilings.bandwidth_at(working_set),
     }
     for (label, speed), style in zip(roofs.items(), ("--", "-"), strict=True):
         roof = np.minimum(intensity * speed, peak)

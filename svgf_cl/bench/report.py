@@ -53,6 +53,11 @@ class Section:
     tables: Sequence[Table] = ()
     notes: Sequence[str] = ()
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is nothing to show; a table without rows is nothing."""
+        return not (self.figure or self.notes or any(table.rows for table in self.tables))
+
 
 def write(
     run: Run, folder: Path, *, old: Run | None = None, first: Sequence[Section] = (), more: Sequence[Section] = ()
@@ -76,12 +81,12 @@ def write(
 
 
 def render(run: Run, parts: Sequence[Section]) -> str:
-    """The page's HTML."""
+    """The page's HTML, without empty parts and tables."""
     template = (resources.files("svgf_cl.bench") / "report.html").read_text(encoding="utf-8")
     return (
         Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
         .from_string(template)
-        .render(run=run, parts=parts)
+        .render(run=run, parts=[part for part in parts if not part.is_empty])
     )
 
 
@@ -95,8 +100,7 @@ def sections(run: Run, old: Run | None) -> Iterator[Section]:
     yield Section("Scaling", tables=[scaling.table(name, found) for name, found in over.items() if found])
     if old:
         yield Section("Comparison", tables=[comparison(old, run)], notes=differences(old, run))
-    if run.left_out:
-        yield Section("Left out", notes=run.left_out)
+    yield Section("Left out", notes=run.left_out)
 
 
 def inline_svg(draw: plots.Draw, title: str) -> Markup:

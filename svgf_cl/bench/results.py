@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from datetime import datetime, timezone
 from functools import cached_property
 from pathlib import Path
@@ -35,8 +35,8 @@ class DeviceRecord:
         How the work is cut on it: the shipped choice, or what ``svgf-cl tune`` stored.
     rms, largest : float
         Error against the float64 oracle, relative to the picture's mean.
-    bandwidth, aligned_loads, offset_loads, flops
-        As in `Ceilings`.
+    ceilings : Ceilings, optional
+        The limits measured in the same run; None where they were left out.
     """
 
     selector: str
@@ -48,20 +48,24 @@ class DeviceRecord:
     tuning: str
     rms: float
     largest: float
-    bandwidth: list[tuple[int, float]]
-    aligned_loads: float
-    offset_loads: float
-    flops: float
-
-    @property
-    def ceilings(self) -> Ceilings:
-        """The limits measured in the same run."""
-        return Ceilings(self.bandwidth, self.aligned_loads, self.offset_loads, self.flops)
+    ceilings: Ceilings | None = None
 
     @property
     def label(self) -> str:
         """Implementation and device, for headings."""
         return f"{self.platform}: {self.device}"
+
+    def as_json(self) -> dict[str, Any]:
+        """All that is known, the ceilings among the rest."""
+        own = asdict(self)
+        return own | (own.pop("ceilings") or {})
+
+    @classmethod
+    def from_json(cls, facts: dict[str, Any]) -> DeviceRecord:
+        """The inverse of `as_json`."""
+        limits = {each.name: facts[each.name] for each in fields(Ceilings) if each.name in facts}
+        own = {name: value for name, value in facts.items() if name not in limits}
+        return cls(**own, ceilings=Ceilings(**limits) if limits else None)
 
 
 @dataclass(frozen=True)
@@ -157,6 +161,11 @@ class Run:
         return f"{self.commit['version']} (git {self.commit['id'][:12]}{dirty})"
 
     @property
+    def has_ceilings(self) -> bool:
+        """Whether the devices' own limits were measured."""
+        return any(device.ceilings for device in self.devices)
+
+    @property
     def platforms(self) -> dict[str, str]:
         """What ran, by `Result.device`: OpenCL implementations; all else is its own."""
         known = {device.selector: device.platform for device in self.devices}
@@ -169,25 +178,30 @@ class Run:
             if result.device == device.selector and all(known.get(name) == value for name, value in facts.items()):
                 yield result
 
-    def write(self, path: Path) -> None:
-        """Write the run as JSON."""
+    @property
+    def text(self) -> str:
+        """The run as JSON."""
         document = {
-            "machine_info": self.machine | {"opencl": [asdict(device) for device in self.devices]},
+            "machine_info": self.machine | {"opencl": [device.as_json() for device in self.devices]},
             "commit_info": self.commit,
             "benchmarks": [result.as_json() for result in self.results],
             "left_out": self.left_out,
             "datetime": self.date,
             "version": pytest_benchmark.__version__,
         }
+        return json.dumps(document, indent=1)
+
+    def write(self, path: Path) -> None:
+        """Write the run as JSON, whole."""
         with written_whole(path) as aside:
-            aside.write_text(json.dumps(document, indent=1), encoding="utf-8")
+            aside.write_text(self.text, encoding="utf-8")
 
     @classmethod
     def read(cls, path: Path) -> Run:
         """Read what `write` wrote; `SvgfError` for any other file."""
         try:
             document = read_json(path)
-            devices = tuple(DeviceRecord(**device) for device in document["machine_info"].pop("opencl"))
+            devices = tuple(DeviceRecord.from_json(device) for device in document["machine_info"].pop("opencl"))
             results = tuple(
                 Result(
                     b["name"], b["params"]["device"], b["params"]["clock"], tuple(b["stats"]["data"]), b["extra_info"]

@@ -11,7 +11,7 @@ from typing import Any
 import pyopencl as cl
 
 from svgf_cl.bench.cases import STARTS, USUAL_SHAPE, Case
-from svgf_cl.bench.ceilings import ALIGNED, OFFSET, CeilingBench, Ceilings
+from svgf_cl.bench.ceilings import Ceilings, CeilingSamples
 from svgf_cl.bench.cores import confined
 from svgf_cl.bench.error import error_to_oracle
 from svgf_cl.bench.results import DeviceRecord, Result
@@ -25,8 +25,6 @@ from svgf_cl.errors import SvgfError
 from svgf_cl.filters.filter import Filter
 from svgf_cl.frame import Frame, Shape
 
-CEILING_SAMPLES = 3  # of each, every time
-
 
 class Station:
     """A device with all that is to be timed on it.
@@ -38,19 +36,18 @@ class Station:
     chosen : sequence of Case
     settings : Filter
         Of which the error is told.
+    ceilings : bool
+        Measure the device's ceilings too.
     """
 
-    def __init__(self, report: DeviceReport, chosen: Sequence[Case], settings: Filter) -> None:
+    def __init__(self, report: DeviceReport, chosen: Sequence[Case], settings: Filter, *, ceilings: bool) -> None:
         assert report.handle is not None
         self.report, self.chosen, self.settings = report, chosen, settings
         self._rigs: dict[Case, Rig] = {}
         self.left_out: list[str] = []
         self._starts: dict[Row, list[float]] = {}
         self._queue = devices.create_queue(report.handle)
-        self._bench = CeilingBench(self._queue)
-        self._copies: dict[int, list[float]] = {size: [] for size in self._bench.working_sets}
-        self._loads: dict[int, list[float]] = {ALIGNED: [], OFFSET: []}
-        self._multiplications: list[float] = []
+        self._ceilings = CeilingSamples(self._queue) if ceilings else None
 
     def set_up(self, case: Case) -> None:
         """Make a denoiser ready, or note why that is impossible."""
@@ -72,13 +69,9 @@ class Station:
                 self._rigs[case].sample(seconds)
 
     def sample_ceilings(self) -> None:
-        """Take a few samples of each."""
-        for _ in range(CEILING_SAMPLES):
-            for size, samples in self._copies.items():
-                samples.append(self._bench.copy(size))
-            for offset, samples in self._loads.items():
-                samples.append(self._bench.load(offset))
-            self._multiplications.append(self._bench.multiply())
+        """Take a few samples of each, where they are asked for."""
+        if self._ceilings:
+            self._ceilings.sample()
 
     def record(self) -> DeviceRecord:
         """What the report says of the device: its ceilings, and the error."""
@@ -94,27 +87,19 @@ class Station:
             tuning=str(best_tuning(device)),
             rms=rms,
             largest=largest,
-            bandwidth=[(size, size / min(samples)) for size, samples in self._copies.items()],
-            aligned_loads=self._bench.loaded / min(self._loads[ALIGNED]),
-            offset_loads=self._bench.loaded / min(self._loads[OFFSET]),
-            flops=self._bench.operations / min(self._multiplications),
+            ceilings=self._ceilings.ceilings if self._ceilings else None,
         )
 
-    def results(self, ceilings: Ceilings, pattern: re.Pattern[str]) -> Iterator[Result]:
-        """All that was sampled and asked for, ceilings too."""
-        for size, seconds in self._copies.items():
-            yield Result(f"ceiling.copy.{size}", self.report.selector, EVENT, tuple(seconds), {"bytes": size})
-        for offset, seconds in self._loads.items():
-            facts = {"bytes": self._bench.loaded}
-            yield Result(f"ceiling.load.{offset}", self.report.selector, EVENT, tuple(seconds), facts)
-        facts = {"flops": self._bench.operations}
-        yield Result("ceiling.multiply", self.report.selector, EVENT, tuple(self._multiplications), facts)
+    def results(self, record: DeviceRecord, pattern: re.Pattern[str]) -> Iterator[Result]:
+        """All that was sampled and asked for; `record` is this device's."""
+        for name, seconds, facts in self._ceilings.named() if self._ceilings else ():
+            yield Result(name, record.selector, EVENT, tuple(seconds), facts)
         usual = Case(USUAL_SHAPE, self.settings)
         for row, values in self._starts.items():
             if pattern.search(usual.name(row)):
                 yield self._result(usual, row, HOST, values)
         for case, rig in self._rigs.items():
-            bounds = bound_facts(case, ceilings)
+            bounds = bound_facts(case, record.ceilings) if record.ceilings else {}
             for (row, clock), values in rig.samples.items():
                 if row in case.rows and pattern.search(case.name(row)):
                     more = bounds.get(row, {}) if clock == EVENT else {}

@@ -38,12 +38,19 @@ class Suite:
     shapes : sequence of (int, int)
     seconds : float, s
         To spend on each denoiser, about; each kind of sample is taken `TURNS` times whatever it takes.
+    ceilings : bool
+        Measure the devices' own limits too; without them there are no rooflines.
     """
 
     pattern: re.Pattern[str]
     settings: Filter
     shapes: Sequence[Shape] = SHAPES
     seconds: float = 1.0
+    ceilings: bool = True
+
+    def names(self) -> list[str]:
+        """The benchmarks that `run` would time on any device, the ceilings aside; errors as of `run`."""
+        return self._names(timed_devices())
 
     def run(self, progress_bar: ProgressBar) -> Run:
         """Time everything, in turn: the same denoiser on one device after the other, then the next.
@@ -58,12 +65,11 @@ class Suite:
         SvgfError
             If no name matches `pattern`, or no device works (`DeviceError`).
         """
-        stations = [self._station(report) for report in timed_devices()]
+        reports = timed_devices()
+        names = self._names(reports)
+        stations = [Station(each, self._chosen(each), self.settings, ceilings=self.ceilings) for each in reports]
         chosen = interleaved([[(station, case) for case in station.chosen] for station in stations])
-        starts = [row for row in STARTS if self.pattern.search(Case(USUAL_SHAPE, self.settings).name(row))]
-        if not chosen and not starts:
-            name = f"{self.settings.name}.frame.1280x720"
-            raise SvgfError(f"--only: expected part of a name such as {name}, got {self.pattern.pattern}")
+        starts = not set(names).isdisjoint(self._starts())
         with progress_bar("setting up", len(chosen) + len(stations)) as advance:
             for station, case in chosen:
                 station.set_up(case)
@@ -85,17 +91,28 @@ class Suite:
             for station in stations:
                 records.append(station.record())
                 advance()
-        results = [
-            station.results(record.ceilings, self.pattern) for station, record in zip(stations, records, strict=True)
-        ]
+        results = [station.results(record, self.pattern) for station, record in zip(stations, records, strict=True)]
         left_out = [line for station in stations for line in station.left_out]
         return Run.now(tuple(records), tuple(chain(*results)), tuple(left_out))
 
-    def _station(self, report: DeviceReport) -> Station:
+    def _names(self, reports: Sequence[DeviceReport]) -> list[str]:
+        """What is chosen on some of these devices; `SvgfError` if that is nothing."""
+        every = [case.name(row) for report in reports for case in self._chosen(report) for row in case.rows]
+        found = [name for name in dict.fromkeys([*every, *self._starts()]) if self.pattern.search(name)]
+        if not found:
+            name = f"{self.settings.name}.frame.1280x720"
+            raise SvgfError(f"--only: expected part of a name such as {name}, got {self.pattern.pattern}")
+        return found
+
+    def _chosen(self, report: DeviceReport) -> list[Case]:
+        """The denoisers of which something is to be timed on a device."""
         assert report.handle is not None
         every = cases(report.handle, self.shapes, self.settings)
-        chosen = [case for case in every if any(self.pattern.search(case.name(row)) for row in case.rows)]
-        return Station(report, chosen, self.settings)
+        return [case for case in every if any(self.pattern.search(case.name(row)) for row in case.rows)]
+
+    def _starts(self) -> list[str]:
+        """The names of the first frame of a process, chosen or not."""
+        return [Case(USUAL_SHAPE, self.settings).name(row) for row in STARTS]
 
 
 def timed_devices() -> list[DeviceReport]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from svgf_cl.bench.ceilings import Ceilings
 from svgf_cl.bench.results import DeviceRecord, Result, Run
 from svgf_cl.bench.rig import EVENT, HOST
 
@@ -28,12 +29,11 @@ def milliseconds(seconds: float) -> str:
 
 
 def device_table(run: Run) -> Table:
-    """What was timed on, a column each: ceilings measured in the same run, and the error."""
+    """What was timed on, a column each: ceilings measured in the same run, if any, and the error."""
     described = [describe(device) for device in run.devices]
     rows = [(what, *(facts[what] for facts in described)) for what in described[0]]
-    return Table(
-        "ceilings measured in the same run, and the error", ("", *(device.platform for device in run.devices)), rows
-    )
+    title = "ceilings measured in the same run, and the error" if run.has_ceilings else "devices, and the error"
+    return Table(title, ("", *(device.platform for device in run.devices)), rows)
 
 
 def describe(device: DeviceRecord) -> dict[str, str]:
@@ -44,25 +44,39 @@ def describe(device: DeviceRecord) -> dict[str, str]:
         "driver": device.driver,
         "compute units": str(device.compute_units),
         "tuning": device.tuning,
-        "copy in cache, GB/s": f"{1e-9 * max(speed for _, speed in device.bandwidth):.0f}",
-        "copy out of cache, GB/s": f"{1e-9 * device.bandwidth[-1][1]:.0f}",
-        "load, aligned, GB/s": f"{1e-9 * device.aligned_loads:.0f}",
-        "load, offset by one, GB/s": f"{1e-9 * device.offset_loads:.0f}",
-        "multiply-add, GFLOP/s": f"{1e-9 * device.flops:.0f}",
+        **(describe_ceilings(device.ceilings) if device.ceilings else {}),
         "error to the float64 oracle, rms": f"{device.rms:.1e}",
         "error to the float64 oracle, largest": f"{device.largest:.1e}",
     }
 
 
+def describe_ceilings(ceilings: Ceilings) -> dict[str, str]:
+    """A device's limits in words."""
+    return {
+        "copy in cache, GB/s": f"{1e-9 * max(speed for _, speed in ceilings.bandwidth):.0f}",
+        "copy out of cache, GB/s": f"{1e-9 * ceilings.bandwidth[-1][1]:.0f}",
+        "load, aligned, GB/s": f"{1e-9 * ceilings.aligned_loads:.0f}",
+        "load, offset by one, GB/s": f"{1e-9 * ceilings.offset_loads:.0f}",
+        "multiply-add, GFLOP/s": f"{1e-9 * ceilings.flops:.0f}",
+    }
+
+
 def benchmark_table(run: Run, device: DeviceRecord) -> Table:
-    """Every benchmark on a device, event and host time side by side."""
+    """Every benchmark on a device, event and host time side by side, without columns that would be empty."""
     columns = ("benchmark", "event ms", "host ms", *LIMITS, "rounds")
     by_name: dict[str, dict[str, Result]] = {}
     for result in run.of(device):
         if "row" in result.facts:
             by_name.setdefault(result.name, {})[result.clock] = result
     title = f"{device.platform}, {device.device}: median and half the interquartile range"
-    return Table(title, columns, [benchmark_row(name, clocks) for name, clocks in by_name.items()])
+    return filled(Table(title, columns, [benchmark_row(name, clocks) for name, clocks in by_name.items()]))
+
+
+def filled(table: Table) -> Table:
+    """The table without the columns in which nothing was measured."""
+    kept = [index for index in range(len(table.columns)) if any(row[index] != "-" for row in table.rows)]
+    columns, *rows = (tuple(cells[index] for index in kept) for cells in (table.columns, *table.rows))
+    return Table(table.title, columns, rows)
 
 
 def benchmark_row(name: str, clocks: dict[str, Result]) -> tuple[str, ...]:

@@ -46,6 +46,10 @@ FINAL_ROUNDS = 12, 40  # at least, and while there is time
 # The winner must be faster in so many rounds of the final (of 12, chance does that once in 50 searches), and worth it.
 CERTAIN = 0.8
 WORTHWHILE = 0.98  # of the default's time
+# Interquartile range of the default's time over its median, up to which a verdict is worth keeping. Over 40 rounds that
+# waver so much the median ratio has a standard error of 2 %: as much as the least gain that counts. On two quiet cores
+# 4 to 7 % were seen, with another program on each 12 %.
+STEADY = 0.1
 
 # Tunings differ by rounding, and by more where rounding decides about a tap; a column of wrong pixels is beyond both.
 ROUNDING = 1e-4  # relative, as in svgf_cl.compare.rounding
@@ -83,6 +87,14 @@ class Trial:
         return median(self.ratios) if self.ratios else float("inf")
 
     @property
+    def wavering(self) -> float:
+        """Interquartile range of its times over their median; 0 for one that never raced."""
+        if not self.times:
+            return 0.0
+        lower, upper = np.percentile(self.times, (25, 75))
+        return float(upper - lower) / self.time
+
+    @property
     def is_faster(self) -> bool:
         """Whether it beats the default beyond noise."""
         wins = sum(ratio < 1 for ratio in self.ratios)
@@ -114,6 +126,8 @@ class Tuner:
         Every tuning tried, in order; the default first.
     untried : int
         Candidates for which there was no time.
+    reference : Trial
+        The default as it did in the final, or in all races where there was none.
     """
 
     def __init__(self, shape: Shape, queue: cl.CommandQueue) -> None:
@@ -126,6 +140,7 @@ class Tuner:
         self._default = Trial(default_tuning(queue.device))
         self.trials = [self._default]
         self.untried = 0
+        self.reference = self._default
 
     def search(self, advance: Callable[[], None] = lambda: None) -> Trial:
         """Race the candidates, then the best of them against the default alone.
@@ -151,9 +166,20 @@ class Tuner:
             best = self._race(best, knob, begin + (1 - FINAL_SHARE) * SECONDS, advance)
         final = Trial(best.tuning)
         if best is not self._default:
-            self._run([self._enter(self._default), self._enter(final)], FINAL_ROUNDS, begin + SECONDS)
+            self.reference = Trial(self._default.tuning)
+            self._run([self._enter(self.reference), self._enter(final)], FINAL_ROUNDS, begin + SECONDS)
         advance()
         return final
+
+    @property
+    def doubts(self) -> list[str]:
+        """Why what was found should not be kept; empty where it should."""
+        found = []
+        if self.untried:
+            found.append(f"no time was left for {self.untried} candidates")
+        if self.reference.wavering > STEADY:
+            found.append(f"the default's own time wavers by {self.reference.wavering:.0%}, more than {STEADY:.0%}")
+        return found
 
     def _race(self, best: Trial, knob: str, deadline: float, advance: Callable[[], None]) -> Trial:
         """The fastest of `best`, the default, and what comes of giving `best` other values of one knob."""

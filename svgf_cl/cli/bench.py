@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -12,7 +14,17 @@ from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import Earlier, FilterName, SettingTexts, parse_settings, parse_size
 from svgf_cl.errors import SvgfError
 from svgf_cl.filters import DEFAULT
-from svgf_cl.io.atomic import output_folder
+from svgf_cl.gate import Check, write_junit
+from svgf_cl.io.atomic import output_file, output_folder
+
+STDOUT = Path("-")  # as --json has it
+
+
+def check_ratio(value: float | None) -> float | None:
+    """Refuse a ratio that every time would miss, or none."""
+    if value is not None and not 0 < value < math.inf:  # NaN, too
+        raise typer.BadParameter(f"expected a ratio > 0 such as 1.10, got {value:g}")
+    return value
 
 
 def bench(
@@ -21,11 +33,33 @@ def bench(
         list[str], typer.Option(metavar="WxH", help="Size to time; may be repeated. By default 320x180 to 3840x2160.")
     ] = [],  # noqa: B006  # never changed; typer wants the default spelled here
     seconds: Annotated[float, typer.Option(metavar="S", min=0.0, help="Time for each denoiser, about.")] = 1.0,
+    ceilings: Annotated[bool, typer.Option(help="Measure the devices' own limits, and show rooflines.")] = True,
+    list_: Annotated[
+        bool, typer.Option("--list", help="Print the names that would be timed, the ceilings aside; time nothing.")
+    ] = False,
     old: Earlier = None,
+    fail_above: Annotated[
+        float | None,
+        typer.Option(
+            metavar="RATIO",
+            help="With --compare: exit code 1 where a pass or frame takes more than this many times as long as before, "
+            "beyond the spread of both runs.",
+            callback=check_ratio,
+        ),
+    ] = None,
+    junit: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="With --fail-above: also write what was checked as JUnit XML.")
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option(
             "-o", "--output", metavar="DIR", help="Also write results.json, report.html and summary.png there."
+        ),
+    ] = None,
+    json: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="Also write the results as JSON there; '-' prints them, and no tables, on stdout."
         ),
     ] = None,
     filter_: FilterName = DEFAULT.name,
@@ -37,37 +71,76 @@ def bench(
     room, with albedo and ids. Event time is the device's clock, host time the caller's. Names are such as
     kalman.atrous.3.1280x720 and kalman.frame.1280x720. How to read it all: docs/benchmarks.md.
 
+    Exit code 1 where --fail-above finds something slower, a line for each on stderr. It is an error where the runs have
+    nothing in common that could be checked.
+
     \b
     Examples:
       svgf-cl bench --only 'frame|enqueue' --size 1280x720
       svgf-cl bench --output out/bench
       svgf-cl bench --only atrous --compare out/bench/results.json
+      svgf-cl bench --compare out/bench/results.json --fail-above 1.10 --junit out/bench.xml
+      svgf-cl bench --no-ceilings --json - > results.json
+      svgf-cl bench --list --only 1280x720
     """
     try:
-        from svgf_cl.bench import compare, report, tables
+        from svgf_cl.bench import compare, regressions, report, tables
         from svgf_cl.bench.cases import SHAPES
         from svgf_cl.bench.results import Run
         from svgf_cl.bench.suite import Suite
     except ModuleNotFoundError as error:
         raise SvgfError(f"bench needs more ({error}): pip install '.[bench]' in a clone of svgf_cl") from error
+    check_gate(old, fail_above, junit)
     shapes = [parse_size(text) for text in size] or SHAPES
-    suite = Suite(parse_pattern(only), parse_settings(filter_, set_), shapes, seconds)
+    suite = Suite(parse_pattern(only), parse_settings(filter_, set_), shapes, seconds, ceilings)
+    if list_:
+        print(*suite.names(), sep="\n")
+        return
     earlier = Run.read(old) if old else None
     folder = output_folder(output) if output else None
+    for file in (json, junit):
+        if file and file != STDOUT:
+            output_file(file)
     run = suite.run(progress_bar)
+    piped = json == STDOUT
     shown = [tables.device_table(run), *(tables.benchmark_table(run, device) for device in run.devices)]
+    notes = [f"left out: {line}" for line in run.left_out]
     if earlier:
         shown.append(compare.comparison(earlier, run))
+        notes += compare.differences(earlier, run)
     for table in shown:
-        show(table.title, table.columns, table.rows)
-    for line in run.left_out:
-        print(f"left out: {line}")
-    for line in compare.differences(earlier, run) if earlier else ():
-        print(line)
+        if table.rows and not piped:
+            show(table.title, table.columns, table.rows)
+    if piped:
+        print(run.text)
+    elif json:
+        run.write(json)
     if folder:
         run.write(folder / "results.json")
         report.write(run, folder, old=earlier)
-        print(f"{folder}: results.json, report.html, summary.png")
+        notes.append(f"{folder}: results.json, report.html, summary.png")
+    for note in notes:
+        typer.echo(note, err=piped)
+    if earlier and fail_above:
+        judge(regressions.checks(earlier, run, fail_above), junit)
+
+
+def check_gate(old: Path | None, fail_above: float | None, junit: Path | None) -> None:
+    """Raise `SvgfError` where a gate lacks what it needs."""
+    if fail_above and not old:
+        raise SvgfError("--fail-above: expected --compare OLD.json beside it, got none")
+    if junit and not fail_above:
+        raise SvgfError("--junit: expected --fail-above RATIO beside it, got none")
+
+
+def judge(checks: Sequence[Check], junit: Path | None) -> None:
+    """Write the JUnit file, if any, and leave with exit code 1 where a check failed, a line for each on stderr."""
+    if junit:
+        write_junit(junit, "svgf-cl bench", checks)
+    failed = [check for check in checks if check.complaint]
+    for check in failed:
+        typer.echo(f"{check.name}, {check.group}: {check.complaint}", err=True)
+    raise typer.Exit(1 if failed else 0)
 
 
 def parse_pattern(text: str) -> re.Pattern[str]:

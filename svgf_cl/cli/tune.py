@@ -14,6 +14,8 @@ from svgf_cl.device.tuning import default_tuning, forget_tuning, store_path, sto
 from svgf_cl.frame import Shape
 from svgf_cl.io.atomic import output_file
 
+REMEDY = "make the machine idle or choose a smaller --size, and run it again"
+
 
 def tune(
     size: Size = "1280x720",
@@ -23,7 +25,10 @@ def tune(
 
     Times vector widths, work-groups and alignments of rows against the default on a built-in room, in less than a
     minute, and stores the fastest where every later run finds it; the default, unless something is faster beyond noise.
-    Pictures stay the same to within rounding. Best on an otherwise idle machine. PYOPENCL_CTX picks another device.
+    Pictures stay the same to within rounding. PYOPENCL_CTX picks another device.
+
+    Exit code 1, and nothing is stored, where the machine was too busy to tell: candidates were left out for lack of
+    time, or the default's own time wavers. Make the machine idle or choose a smaller --size, and run it again.
 
     \b
     Examples:
@@ -47,10 +52,11 @@ def tune(
     for trial in tuner.trials:
         if trial.fault:
             print(f"rejected {trial.tuning}: {trial.fault}")
-    if tuner.untried:
-        print(f"no time was left for {tuner.untried} candidates; a smaller --size takes less")
-    chosen = final.tuning if final.is_faster else default_tuning(device)
     print(verdict(final))
+    if tuner.doubts:
+        typer.echo(f"nothing is stored: {', and '.join(tuner.doubts)}; {REMEDY}", err=True)
+        raise typer.Exit(1)
+    chosen = final.tuning if final.is_faster else default_tuning(device)
     print(f"{chosen}: stored in {store_tuning(device, chosen)}")
 
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from svgf_cl.bench.ceilings import Ceilings
 from svgf_cl.bench.results import DeviceRecord, Result, Run
 
 GIGA = 1e9
+CEILINGS = Ceilings([(2**16, 100 * GIGA), (2**29, 10 * GIGA)], 900 * GIGA, 300 * GIGA, 400 * GIGA)
 
 
 def device(selector: str = "0:0", **other: Any) -> DeviceRecord:
@@ -20,10 +22,7 @@ def device(selector: str = "0:0", **other: Any) -> DeviceRecord:
         "tuning": "16 wide",
         "rms": 1.5e-7,
         "largest": 9e-7,
-        "bandwidth": [(2**16, 100 * GIGA), (2**29, 10 * GIGA)],
-        "aligned_loads": 900 * GIGA,
-        "offset_loads": 300 * GIGA,
-        "flops": 400 * GIGA,
+        "ceilings": CEILINGS,
     }
     return DeviceRecord(selector=selector, **(facts | other))
 

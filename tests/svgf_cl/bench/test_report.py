@@ -18,7 +18,7 @@ import pytest
 from svgf_cl.bench import report
 from svgf_cl.bench.report import Section, inline_png
 from svgf_cl.bench.tables import Table
-from tests.svgf_cl.bench.runs import result, run, whole_run
+from tests.svgf_cl.bench.runs import device, result, run, whole_run
 
 POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 
@@ -115,6 +115,30 @@ def test_a_run_of_one_stage_has_a_report_too(tmp_path: Path) -> None:
     report.write(run(result("temporal", "host", 1.0)), tmp_path)
     assert "svgf.temporal.1280x720" in (tmp_path / "report.html").read_text(encoding="utf-8")
     assert (tmp_path / "summary.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_what_is_empty_is_left_out() -> None:
+    empty, full = Table("no rows", ("a",), []), Table("rows", ("a",), [("1",)])
+    page = report.render(
+        run(),
+        [
+            Section("Nothing"),
+            Section("Empty table", tables=[empty]),
+            Section("Both", tables=[empty, full]),
+            Section("Note", notes=["a note"]),
+            Section("Figure", inline_png(png(1, 1), "a plot")),
+        ],
+    )
+    assert re.findall("<h2>(.*)</h2>", page) == ["Both", "Note", "Figure"]
+    assert re.findall("<h3>(.*)</h3>", page) == ["rows"]
+
+
+def test_a_run_without_ceilings_says_nothing_of_rooflines(tmp_path: Path) -> None:
+    report.write(run(result("frame", "event", 1.0), devices=(device(ceilings=None),)), tmp_path)
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "svgf.frame.1280x720" in page
+    assert "roofline" not in page.lower()
+    assert "GFLOP" not in page
 
 
 def test_the_same_run_gives_the_same_page(tmp_path: Path) -> None:

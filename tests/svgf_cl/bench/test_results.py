@@ -11,7 +11,7 @@ import pytest
 
 from svgf_cl import SvgfError
 from svgf_cl.bench.results import Run, commit_info
-from tests.svgf_cl.bench.runs import BOUND, result, run, whole_run
+from tests.svgf_cl.bench.runs import BOUND, device, result, run, whole_run
 
 
 def test_a_run_comes_back(tmp_path: Path) -> None:
@@ -21,7 +21,17 @@ def test_a_run_comes_back(tmp_path: Path) -> None:
     assert read.results == written.results
     assert (read.commit, read.machine, read.date) == (written.commit, written.machine, written.date)
     assert read.left_out == written.left_out
-    assert read.devices[0].ceilings.bandwidth_at(2**16) == written.devices[0].ceilings.bandwidth_at(2**16)
+    was, is_ = written.devices[0].ceilings, read.devices[0].ceilings
+    assert was
+    assert is_
+    assert is_.bandwidth_at(2**16) == was.bandwidth_at(2**16)
+    assert is_.flops == was.flops
+
+
+def test_a_run_without_ceilings_comes_back(tmp_path: Path) -> None:
+    without = run(result("temporal", "event", 1.0), devices=(device(ceilings=None),))
+    without.write(tmp_path / "results.json")
+    assert Run.read(tmp_path / "results.json") == without
 
 
 def test_pytest_benchmark_reads_it(tmp_path: Path) -> None:

@@ -62,9 +62,34 @@ def test_a_frame_knows_its_cost_and_memory() -> None:
     assert 0 < levels.facts["flops"] < frame.facts["flops"]
 
 
+def test_without_ceilings_there_is_no_bound() -> None:
+    run = Suite(re.compile(r"frame\.16x9"), Settings(), [SMALL], seconds=0.0, ceilings=False).run(Steps().bar)
+    assert {result.name for result in run.results} == {"svgf.frame.16x9"}
+    assert all(result.roofline is None for result in run.results)
+    assert run.devices[0].ceilings is None
+
+
+def test_names_are_those_that_a_run_would_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    suite = Suite(re.compile(r"svgf\.(atrous\.2|enqueue)\.16x9"), Settings(), [SMALL], seconds=0.0)
+    assert suite.names() == ["svgf.atrous.2.16x9", "svgf.enqueue.16x9"]
+    run = suite.run(Steps().bar)
+    assert {result.name for result in run.results if not result.name.startswith("ceiling.")} == set(suite.names())
+    monkeypatch.setattr("svgf_cl.bench.suite.timed_devices", lambda: 2 * [devices.choose(devices.list_devices())])
+    assert len(suite.names()) == 2, "each once, on however many devices"
+
+
+def test_names_follow_sizes_and_settings() -> None:
+    names = Suite(re.compile("svgf"), Settings(iterations=2), [SMALL, (1, 2)]).names()
+    assert {"svgf.frame.16x9", "svgf.frame.2x1", "svgf.atrous.2.2x1", "svgf.start.cold.1280x720"} <= set(names)
+    assert "svgf.frame.signals2.1280x720" in names
+    assert "svgf.atrous.3.16x9" not in names
+
+
 def test_no_name_matches() -> None:
-    with pytest.raises(SvgfError, match=r"--only: expected part of a name such as .*, got nothing"):
-        Suite(re.compile("nothing"), Settings(), [SMALL]).run(Steps().bar)
+    suite = Suite(re.compile("nothing"), Settings(), [SMALL])
+    for call in (suite.names, lambda: suite.run(Steps().bar)):
+        with pytest.raises(SvgfError, match=r"--only: expected part of a name such as .*, got nothing"):
+            call()
 
 
 def test_what_has_no_room_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:

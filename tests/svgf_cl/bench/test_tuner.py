@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import partial
 from typing import Any
 
@@ -11,7 +12,7 @@ import pytest
 
 from svgf_cl import Denoiser, Eaw, Frame, Tuning
 from svgf_cl.bench import tuner
-from svgf_cl.bench.tuner import STEPS, Trial, Tuner
+from svgf_cl.bench.tuner import FINAL_ROUNDS, STEPS, Trial, Tuner
 
 SHAPE = (9, 20)
 DEFAULT = Tuning(vector_width=16, work_group=(64, 1))
@@ -105,6 +106,33 @@ def test_when_time_is_up_the_rest_is_counted(
     assert len(steps) == STEPS
     assert len(search.trials) == 1
     assert search.untried > 10
+    assert search.doubts == [f"no time was left for {search.untried} candidates"]
+
+
+def test_a_steady_machine_leaves_no_doubts(fake: type[FakeDenoiser], queue: cl.CommandQueue) -> None:
+    fake.cost = staticmethod(by_parts)
+    search = Tuner(SHAPE, queue)
+    search.search()
+    assert search.doubts == []
+    assert search.reference.tuning == DEFAULT
+    assert len(search.reference.times) == FINAL_ROUNDS[1], "those of the final alone"
+
+
+@pytest.mark.parametrize("cost", [by_parts, lambda tuning: 10.0], ids=["some are faster", "none is faster"])
+def test_a_wavering_default_is_a_doubt(cost: Any, fake: type[FakeDenoiser], queue: cl.CommandQueue) -> None:
+    fake.cost, fake.noise = staticmethod(cost), 1.0
+    search = Tuner(SHAPE, queue)
+    search.search()
+    (doubt,) = search.doubts
+    assert re.fullmatch(r"the default's own time wavers by \d\d%, more than 10%", doubt)
+
+
+@pytest.mark.parametrize(
+    ("times", "wavering"),
+    [([], 0.0), ([7.0], 0.0), ([8.0, 9.0, 10.0, 11.0, 12.0], 0.2), ([10.0] * 9 + [99.0], 0.0)],
+)
+def test_wavering_is_the_interquartile_range_over_the_median(times: list[float], wavering: float) -> None:
+    assert Trial(DEFAULT, times=times).wavering == pytest.approx(wavering)
 
 
 @pytest.mark.parametrize(

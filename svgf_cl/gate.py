@@ -1,0 +1,65 @@
+"""Checks that let a change through or stop it, as a file in JUnit's XML, which CI services show."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+from svgf_cl.io.atomic import written_whole
+
+# What XML 1.0 cannot hold, not even escaped.
+NO_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+@dataclass(frozen=True)
+class Check:
+    """One thing that was held against a limit.
+
+    Parameters
+    ----------
+    name : str
+        What was checked.
+    group : str
+        What it belongs to, such as a device; JUnit calls it the class.
+    complaint : str
+        What is wrong; empty where the check passed.
+    """
+
+    name: str
+    group: str
+    complaint: str = ""
+
+
+def write_junit(path: Path, suite_name: str, checks: Sequence[Check]) -> None:
+    """Write checks as a JUnit file with one suite, whole or not at all.
+
+    Raises
+    ------
+    FileError
+        Where the file cannot be written.
+    """
+    failures = sum(bool(check.complaint) for check in checks)
+    counts = {"tests": str(len(checks)), "failures": str(failures), "errors": "0"}
+    root = ElementTree.Element("testsuites", counts)
+    suite = ElementTree.SubElement(root, "testsuite", {"name": xml_text(suite_name)} | counts)
+    suite.extend([case_element(check) for check in checks])
+    ElementTree.indent(root)
+    with written_whole(path) as aside:
+        ElementTree.ElementTree(root).write(aside, encoding="utf-8", xml_declaration=True)
+
+
+def case_element(check: Check) -> ElementTree.Element:
+    """Make the element of one check; services show the failure's message, its text, or both."""
+    case = ElementTree.Element("testcase", {"classname": xml_text(check.group), "name": xml_text(check.name)})
+    if check.complaint:
+        complaint = xml_text(check.complaint)
+        ElementTree.SubElement(case, "failure", {"message": complaint}).text = complaint
+    return case
+
+
+def xml_text(text: str) -> str:
+    """Write what XML cannot hold as Python would: names may come from files of anyone."""
+    return NO_XML.sub(lambda match: ascii(match[0])[1:-1], text)
