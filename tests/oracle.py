@@ -10,7 +10,7 @@ from functools import partial
 
 import pytest
 
-from svgf_cl import Eaw, Frame, Kalman, Settings
+from svgf_cl import Accumulation, Eaw, Frame, Kalman, Lbf, Sbf, Settings
 from svgf_cl.filters.filter import Filter
 from svgf_cl.oracle.accuracy import Deviation, deviations
 from tests.denoising import vector_width
@@ -30,6 +30,10 @@ TOLERANCES = {
     "variance": 2e-4,  # 128 times the cosine, and exp of up to -80 amplify a rounding that often
     "level": 1.5e-4,
     "level_variance": 2e-4,  # the same weights squared
+    "scale": 1e-4,  # as of a level; a sum over up to 1089 taps
+    "risk": 2e-3,  # the square of a difference of nearly the same
+    "parameters": 1e-3,  # powers of two, from deviations that are differences of squares
+    "filtered": 1e-3,  # exponents of 60 octaves times a parameter
     "antialiased": 1e-6,
     "resolved": 5e-6,  # dim green under bright red and blue is a small difference
 }
@@ -154,6 +158,25 @@ KALMAN_CASES = {
     "Kalman, ids alone": Case(partial(changing_sequence, ("color", "id"), motion=2), Kalman(taa=True), 4),
 }
 
+# Each frame of these has a thousand taps a pixel: few frames, which Oclgrind gets through.
+BILATERAL_CASES = {
+    "SBF, plain": Case(partial(bumpy_sequence, PLAIN, count=3), Sbf()),
+    "SBF, split": Case(
+        partial(bumpy_sequence, SPLIT, count=3),
+        Sbf(gamma_depth=3.0, gamma_normal=1.5, alpha_color=0.6, depth_slope_floor=4e-3, sigma_depth=2.0),
+        4,
+    ),
+    "SBF, full": Case(partial(bumpy_sequence, FULL, count=2), Sbf(taa=True), 1),
+    "LBF, plain": Case(partial(bumpy_sequence, PLAIN, count=3), Lbf()),
+    "LBF, split": Case(
+        partial(bumpy_sequence, SPLIT, count=3),
+        Lbf(alpha_color=0.6, depth_slope_floor=4e-3, albedo_threshold=1.0, taa=True),
+        4,
+    ),
+    "LBF, full": Case(partial(bumpy_sequence, FULL, count=2), Lbf(), 1),
+    "accumulation": Case(partial(bumpy_sequence, SPLIT), Accumulation(alpha_color=0.1, taa=True)),
+}
+
 every_case = pytest.mark.parametrize("case", CASES)
 antialiased_cases = pytest.mark.parametrize("case", [name for name, case in CASES.items() if case.settings.taa])
 
@@ -174,7 +197,7 @@ def assert_follows_oracle(case: str, *stages: str) -> None:
 def assert_case_follows_oracle(case: Case, *stages: str) -> None:
     """Every one of these stages, and for "level" and "level_variance" every level, keeps its tolerance."""
     for name, deviation in measured(case).items():
-        kind = "level" + name[len("level_1") :] if name.startswith("level_") else name
+        kind = re.sub(r"^(level|scale|risk)_\d", r"\1", name)
         if kind in stages:
             assert deviation.relative <= TOLERANCES[kind], deviation
             assert deviation.decided_otherwise <= DECIDED_OTHERWISE, deviation

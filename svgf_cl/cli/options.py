@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -104,14 +104,21 @@ def describe(domain: Domain) -> str:
 
 
 def settings_help() -> str:
-    """Describe every setting with its range and default, for the help text: first what is the same for all filters."""
-    known = {filter_: [described(kind, name) for name in domains(kind)] for filter_, kind in FILTERS.items()}
-    first, *others = known.values()
-    shared = [text for text in first if all(text in texts for texts in others)]
-    parts = ["All filters have " + "; ".join(shared)]
-    for filter_, texts in known.items():
-        parts.append(f"{filter_} also has " + "; ".join(text for text in texts if text not in shared))
+    """Describe every setting with its range and default, for the help text: by the filters that have it like that."""
+    owners: dict[str, list[str]] = {}
+    for filter_, kind in FILTERS.items():
+        for name in domains(kind):
+            owners.setdefault(described(kind, name), []).append(filter_)
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for text, filters in sorted(owners.items(), key=lambda item: -len(item[1])):
+        groups.setdefault(tuple(filters), []).append(text)
+    parts = [f"Of {spelled(filters)}: {'; '.join(texts)}" for filters, texts in groups.items()]
     return f"Change a setting of the filter; may be repeated. {'. '.join(parts)}."
+
+
+def spelled(filters: Sequence[str]) -> str:
+    """Name some of the filters, or all."""
+    return "all filters" if len(filters) == len(FILTERS) else ", ".join(filters)
 
 
 def described(kind: type[Filter], name: str) -> str:

@@ -17,6 +17,7 @@ from svgf_cl.device import programs
 from svgf_cl.filters import FILTERS
 from svgf_cl.filters.pipeline import Pass, Pipeline
 from svgf_cl.filters.signals import SPLITS, Inputs
+from svgf_cl.settings import domains
 
 pytestmark = pytest.mark.filterwarnings("ignore::pyopencl.CompilerWarning")  # Intel's reports success
 
@@ -28,8 +29,9 @@ INPUTS = [
 
 
 def pipeline_of(name: str, inputs: Inputs, *, taa: bool) -> Pipeline:
-    """Of one level, as all take the same."""
-    return FILTERS[name](taa=taa, iterations=1).pipeline(inputs)
+    """Of one a-trous level, as all take the same."""
+    kind = FILTERS[name]
+    return kind(taa=taa, **{"iterations": 1} if "iterations" in domains(kind) else {}).pipeline(inputs)
 
 
 def options(entry: Pass, pipeline: Pipeline) -> tuple[str, ...]:
