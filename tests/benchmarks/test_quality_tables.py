@@ -9,8 +9,8 @@ from pathlib import Path
 
 from benchmarks import quality_tables
 from benchmarks.contest import Result, Row
-from benchmarks.judge import Findings
 from benchmarks.presentation import MARK
+from svgf_cl.compare.judge import Findings
 
 GOOD = Findings(40.0, 0.99, 0.02, 0.01, 0.003, 0.002, -0.012, 0.97, 0.9, 0.8, (0, 3))
 BAD = replace(GOOD, psnr=20.0, flip=0.2, temporal=0.004, moving_shadows=math.nan, lags=(11, None))

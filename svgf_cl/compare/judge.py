@@ -11,12 +11,12 @@ from functools import cached_property
 
 import numpy as np
 
-from benchmarks.surfaces import one_surface, reflecting, relit, still, without_albedo
 from svgf_cl.compare.halves import Mask, Pair, brightness, squared_change, squared_error
 from svgf_cl.compare.kept import RADIUS, Plane, contrast, sharpness
 from svgf_cl.compare.lag import lag, response, steps
 from svgf_cl.compare.metrics import decibels, flip, relmse, ssim
 from svgf_cl.compare.share import Share
+from svgf_cl.compare.surfaces import one_surface, reflecting, relit, still, without_albedo
 from svgf_cl.frame import LUMINANCE, Frame
 from svgf_cl.io.display import Linear, display
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmarks import surfaces
 from svgf_cl import Frame
+from svgf_cl.compare import surfaces
 
 SHAPE = (9, 12)
 PLAIN: dict[str, Any] = {

@@ -10,8 +10,8 @@ import pytest
 pytest.importorskip("flip_evaluator")
 pytest.importorskip("skimage")
 
-from benchmarks.judge import Findings, Judge, View, switches_in
 from svgf_cl import Frame
+from svgf_cl.compare.judge import Findings, Judge, View, switches_in
 
 SHAPE = (24, 32)
 RNG = np.random.default_rng(0)
