@@ -1,166 +1,51 @@
 """How good pictures of a sequence are: every measure of `svgf_cl.compare`, frame by frame, then of all frames.
 
-Each measure that has a way not to count the truth's own noise goes it. SSIM, FLIP and relMSE have none.
+Each measure that has a way not to count the truth's own noise goes it. SSIM, FLIP, relMSE and the share that is
+unsettled have none.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
-from svgf_cl.compare.halves import Mask, Pair, brightness, squared_change, squared_error
-from svgf_cl.compare.kept import RADIUS, Plane, contrast, sharpness
+from svgf_cl.compare.ghost import Uncovered
+from svgf_cl.compare.halves import Pair
 from svgf_cl.compare.lag import lag, response, steps
-from svgf_cl.compare.metrics import decibels, flip, relmse, ssim
+from svgf_cl.compare.metrics import decibels
+from svgf_cl.compare.score import Change, Score, Sight
 from svgf_cl.compare.share import Share
-from svgf_cl.compare.surfaces import one_surface, reflecting, relit, still, without_albedo
-from svgf_cl.frame import LUMINANCE, Frame
-from svgf_cl.io.display import Linear, display
-
-
-@dataclass(frozen=True, eq=False)
-class View:
-    """A frame, and the truth about it: what its pictures are judged by.
-
-    Parameters
-    ----------
-    frame : Frame
-    halves : two of (H, W, 3)
-        Independent halves of the truth, linear.
-    jitter : bool
-        Whether pixels of the truth are means over their areas, which the albedo of one ray is not.
-    earlier : Frame and two of (H, W, 3), optional
-        The frame before, and halves of the truth about it, if they are known.
-    """
-
-    frame: Frame
-    halves: Pair
-    jitter: bool
-    earlier: tuple[Frame, Pair] | None = None
-
-    @cached_property
-    def truth(self) -> Linear:
-        """The best there is, linear."""
-        return 0.5 * (self.halves[0] + self.halves[1])
-
-    @cached_property
-    def shown(self) -> Linear:
-        """The truth, display-referred."""
-        return display(self.truth)
-
-    @cached_property
-    def shown_halves(self) -> Pair:
-        """The halves, display-referred."""
-        return display(self.halves[0]), display(self.halves[1])
-
-    @cached_property
-    def light(self) -> tuple[Plane, Plane]:
-        """Luminance of the halves without albedo."""
-        return self.light_in(self.halves[0]), self.light_in(self.halves[1])
-
-    @cached_property
-    def relit(self) -> Mask:
-        """Around which of the lit pixels nothing moved since the frame before but light."""
-        if self.earlier is None:
-            return np.zeros(self.frame.shape, np.bool_)
-        frame, halves = self.earlier
-        past = self.light_in(halves[0]), self.light_in(halves[1])
-        return self.lit & relit(past, self.light, still(frame, self.frame))
-
-    @cached_property
-    def plain(self) -> Mask:
-        """Around which pixels there is one surface of one colour."""
-        return one_surface(self.frame)
-
-    @cached_property
-    def lit(self) -> Mask:
-        """Around which pixels a window shows one surface, and no lamp: contrast there is that of light.
-
-        Where pixels of the truth are means, it shows one colour, too, as do the pixels around it: one ray does not tell
-        what else there is in its pixel.
-        """
-        window = RADIUS + 1 if self.jitter else RADIUS
-        return self.reflecting & one_surface(self.frame, window, one_colour=self.jitter)
-
-    @cached_property
-    def reflecting(self) -> Mask:
-        """Where no lamp is seen."""
-        return reflecting(self.frame)
-
-    def light_in(self, picture: Linear) -> Plane:
-        """Luminance of a picture of this frame without albedo."""
-        return without_albedo(picture, self.frame)
-
-
-@dataclass(frozen=True)
-class Score:
-    """One picture of one frame.
-
-    Parameters
-    ----------
-    ssim, flip, relmse : float
-    error, brightness, edges, shadows, moving_shadows : Share
-    """
-
-    ssim: float
-    flip: float
-    relmse: float
-    error: Share
-    brightness: Share
-    edges: Share
-    shadows: Share
-    moving_shadows: Share
-
-    @classmethod
-    def of(cls, picture: Linear, view: View) -> Score:
-        """Measure one linear picture."""
-        shown, light = display(picture), view.light_in(picture)
-        return cls(
-            ssim=ssim(shown, view.shown),
-            flip=flip(shown, view.shown),
-            relmse=relmse(picture, view.truth),
-            error=squared_error(shown, view.shown_halves),
-            brightness=brightness(picture, view.halves, view.reflecting),
-            edges=sharpness(shown, view.shown_halves, np.ones(view.frame.shape, np.bool_)),
-            shadows=contrast(light, view.light, view.lit),
-            moving_shadows=contrast(light, view.light, view.relit),
-        )
-
-
-@dataclass(frozen=True)
-class Change:
-    """How much the error changes from one picture to the next: everywhere, and on surfaces of one colour."""
-
-    everywhere: Share
-    on_surfaces: Share
-
-    @classmethod
-    def of(cls, earlier: Linear, later: Linear, before: View, now: View) -> Change:
-        """Measure two consecutive linear pictures."""
-        seen = display(earlier), display(later), before.shown_halves, now.shown_halves
-        return cls(squared_change(*seen), squared_change(*seen, before.plain & now.plain))
+from svgf_cl.compare.stability import Flicker, excess, root
+from svgf_cl.compare.view import View
+from svgf_cl.frame import LUMINANCE
+from svgf_cl.io.display import Linear
 
 
 @dataclass(frozen=True)
 class Findings:
-    """How good a filter's pictures of a sequence are.
+    """How good a filter's pictures of a sequence are. A figure is NaN where the frames show nothing it is about.
 
     Parameters
     ----------
     psnr : float, dB
         Mean over frames, without the truth's noise.
-    ssim, flip, relmse : float
+    ssim, flip, relmse, relmse_trimmed : float
         Means over frames.
-    temporal, temporal_on_surfaces : float
-        Temporal error, root mean square, without the truth's noise.
     bias : float
         Light too much, as a share of that of the truth; negative where light is lost.
-    edges, shadows, moving_shadows : float
+    temporal, temporal_on_surfaces : float
+        Temporal error, root mean square, without the truth's noise.
+    flicker, warped : float
+        How much more than the truth pictures change, where surfaces rest and where they move; negative if less.
+    edges, shadows, moving_shadows, detail : float
         Shares kept: of the sharpness of edges, of the contrast of light on a surface, of the same where the light has
-        just changed. NaN without any.
+        just changed, of the finest contrast of textures that move.
+    ghost : float
+        Share of what was seen before that is left where something has come into view.
+    unsettled : float
+        Share of thin geometry that is plainly wrong.
     lags : tuple of int or None
         Frames until each switching of a lamp is followed; None where it is not, before the next or the end.
     """
@@ -169,12 +54,18 @@ class Findings:
     ssim: float
     flip: float
     relmse: float
+    relmse_trimmed: float
+    bias: float
     temporal: float
     temporal_on_surfaces: float
-    bias: float
+    flicker: float
+    warped: float
     edges: float
     shadows: float
     moving_shadows: float
+    detail: float
+    ghost: float
+    unsettled: float
     lags: tuple[int | None, ...]
 
 
@@ -192,41 +83,73 @@ class Judge:
         self._scores: list[Score] = []
         self._changes: list[Change] = []
         self._responses: list[list[float]] = []
-        self._last: tuple[Linear, View] | None = None
+        self._flicker = Flicker()
+        self._ghost = Share()
+        self._uncovered: Uncovered | None = None
+        self._last: Sight | None = None
         self._unswitched: View | None = None
 
     def see(self, picture: Linear, view: View) -> None:
         """Judge the next linear picture, (H, W, 3)."""
+        sight = Sight(picture, view)
         if self._last:
-            (earlier, before) = self._last
-            self._changes.append(Change.of(earlier, picture, before, view))
-            if len(self._scores) in self._switches:
-                self._unswitched = before
-                self._responses.append([])
+            self._changes.append(Change.of(self._last, sight))
+            self._follow_lamps(sight, self._last.view)
+            self._follow_ghosts(sight, self._last.view)
+        resting = view.resting if self._last else np.ones(view.frame.shape, np.bool_)
+        self._flicker.see(sight.shown, view.shown_halves, resting)
+        self._scores.append(Score.of(sight))
+        self._last = sight
+
+    def _follow_lamps(self, sight: Sight, before: View) -> None:
+        if len(self._scores) in self._switches:
+            self._unswitched = before
+            self._responses.append([])
         if self._unswitched:
-            where = self._unswitched.reflecting & view.reflecting
-            followed = response(picture, self._unswitched.halves, view.halves, where)
+            where = self._unswitched.reflecting & sight.view.reflecting
+            followed = response(sight.picture, self._unswitched.halves, sight.view.halves, where)
             self._responses[-1].append(followed.value)
-        self._scores.append(Score.of(picture, view))
-        self._last = picture, view
+
+    def _follow_ghosts(self, sight: Sight, before: View) -> None:
+        if sight.view.past:
+            known = self._uncovered or Uncovered.none(before.frame.shape)
+            self._uncovered = known.followed(sight.view.past, before.shown_halves)
+            self._ghost += self._uncovered.left(sight.shown, sight.view.shown_halves)
 
     @property
     def findings(self) -> Findings:
         """What was found so far; at least two pictures were seen."""
-        scores, changes = self._scores, self._changes
+        scores, changes, curves = self._scores, self._changes, self.curves
         return Findings(
-            psnr=float(np.mean([decibels(score.error.value) for score in scores])),
-            ssim=float(np.mean([score.ssim for score in scores])),
-            flip=float(np.mean([score.flip for score in scores])),
-            relmse=float(np.mean([score.relmse for score in scores])),
-            temporal=root(pooled([change.everywhere for change in changes])),
-            temporal_on_surfaces=root(pooled([change.on_surfaces for change in changes])),
-            bias=pooled([score.brightness for score in scores]) - 1,
-            edges=pooled([score.edges for score in scores]),
-            shadows=pooled([score.shadows for score in scores]),
-            moving_shadows=pooled([score.moving_shadows for score in scores]),
+            psnr=float(np.mean(curves["psnr"])),
+            ssim=float(np.mean(curves["ssim"])),
+            flip=float(np.mean(curves["flip"])),
+            relmse=float(np.mean(curves["relmse"])),
+            relmse_trimmed=float(np.mean([score.relmse_trimmed for score in scores])),
+            bias=total(score.brightness for score in scores).value - 1,
+            temporal=root(total(change.everywhere for change in changes).value),
+            temporal_on_surfaces=root(total(change.on_surfaces for change in changes).value),
+            flicker=self._flicker.value,
+            warped=excess(total(change.warped for change in changes), total(change.warped_truth for change in changes)),
+            edges=total(score.edges for score in scores).value,
+            shadows=total(score.shadows for score in scores).value,
+            moving_shadows=total(score.moving_shadows for score in scores).value,
+            detail=total(score.detail for score in scores).value,
+            ghost=self._ghost.value,
+            unsettled=total(score.unsettled for score in scores).value,
             lags=tuple(lag(responses) for responses in self._responses),
         )
+
+    @property
+    def curves(self) -> dict[str, list[float]]:
+        """Figures of each frame so far, by the key of their measure; no temporal error of the first, but NaN."""
+        return {
+            "psnr": [decibels(score.error.value) for score in self._scores],
+            "ssim": [score.ssim for score in self._scores],
+            "flip": [score.flip for score in self._scores],
+            "relmse": [score.relmse for score in self._scores],
+            "temporal": [float("nan"), *(root(change.everywhere.value) for change in self._changes)],
+        }
 
 
 def switches_in(truths: Sequence[Pair]) -> list[int]:
@@ -234,11 +157,6 @@ def switches_in(truths: Sequence[Pair]) -> list[int]:
     return steps([float(np.mean(0.5 * (first + second) @ np.array(LUMINANCE))) for first, second in truths])
 
 
-def pooled(shares: Sequence[Share]) -> float:
-    """Value of all shares together."""
-    return sum(shares, Share()).value
-
-
-def root(square: float) -> float:
-    """The square root; 0 below 0, where the estimate of a square of next to nothing may lie."""
-    return float(np.sqrt(np.maximum(square, 0.0)))
+def total(shares: Iterable[Share]) -> Share:
+    """All shares together."""
+    return sum(shares, Share())

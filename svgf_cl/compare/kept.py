@@ -1,6 +1,6 @@
 """How much of the truth's contrast a picture keeps: the slope of the one on the other, where the truth has contrast.
 
-All three measures are shares: 1 where all is kept, 0 where the picture is flat; more than 1 where contrast is exaggerated.
+All measures are shares: 1 where all is kept, 0 where the picture is flat; more than 1 where contrast is exaggerated.
 
 =========  =====================  =====================================================================================
 measure    computed on            definition
@@ -10,8 +10,8 @@ sharpness  display-referred       ``sum(g . g1) / sum(g2 . g1)``, g, g1 and g2 b
 contrast   luminance of light     ``sum(cov(a / m, h1 / m1)) / sum(cov(h2 / m2, h1 / m1))`` over windows of 5x5 pixels,
            without albedo,        m, m1 and m2 being each one's mean in the window: lit minus shadow, relative to the
            linear                 light there, over that of the truth; wherever light varies over a surface
-detail     display-referred       ``sum(l l1) / sum(l2 l1)``, l, l1 and l2 being the Laplacians of the luminance of picture
-                                  and halves: how much of the finest contrast is left
+detail     display-referred       ``sum(l l1) / sum(l2 l1)``, l, l1 and l2 being Laplacians of the luminance of
+                                  picture and halves: how much of the finest contrast is left
 =========  =====================  =====================================================================================
 
 Sums are over the `SHARE` of the pixels or windows where h1 has most. The halves h1 and h2 of the truth are independent,

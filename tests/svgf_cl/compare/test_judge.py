@@ -11,7 +11,8 @@ pytest.importorskip("flip_evaluator")
 pytest.importorskip("skimage")
 
 from svgf_cl import Frame
-from svgf_cl.compare.judge import Findings, Judge, View, switches_in
+from svgf_cl.compare.judge import Findings, Judge, switches_in
+from svgf_cl.compare.view import View
 
 SHAPE = (24, 32)
 RNG = np.random.default_rng(0)
