@@ -10,7 +10,8 @@ warped   on surfaces found again in  ``sqrt(mean(d d)) - sqrt(mean(d1 d2))``, d,
 =======  ==========================  ==================================================================================
 
 Both are display-referred, in -1..1, and 0 where a picture changes as much as the truth. Above 0 it flickers, below 0 it
-is steadier than the truth: it lags, or it is blurred. As h1 and h2 are independent halves of the truth, as in
+is steadier than the truth: it lags, or it is blurred. Where the truth itself changes much, a little more hardly counts,
+as squares add up: both tell most of light that rests. As h1 and h2 are independent halves of the truth, as in
 `svgf_cl.compare.halves`, its noise does not count. NaN where there is no such surface.
 """
 
