@@ -7,8 +7,9 @@ seen there, o, is a ghost if it shines through:
 
 p being the picture and t the truth, display-referred, over all pixels uncovered in one of the last `GHOST_FRAMES`
 frames, this one included. 0: nothing is left; 1: the old picture is still there. Where the camera or the thing moves, o
-moves along with the surface that was uncovered, as a filter's history does. The truth's own noise is kept out by its
-halves, as in `svgf_cl.compare.halves`: no two factors of a product are of one half.
+moves along with the surface that was uncovered, as a filter's history does. Pixels beside an edge do not count: they
+may be mixtures of what is on both sides. The truth's own noise is kept out by its halves, as in
+`svgf_cl.compare.halves`: no two factors of a product are of one half.
 """
 
 from __future__ import annotations
@@ -63,9 +64,9 @@ class Uncovered:
         mask: Mask = self.age < GHOST_FRAMES
         return mask
 
-    def left(self, shown: Linear, halves: Pair) -> Share:
-        """How much of it is left in a display-referred picture, (H, W, 3)."""
-        where = self.lately
+    def left(self, shown: Linear, halves: Pair, inside: Mask) -> Share:
+        """How much of it is left in a display-referred picture, (H, W, 3), where it is `inside` of surfaces, (H, W)."""
+        where = self.lately & inside
         share = Share()
         for one, other in ((0, 1), (1, 0)):
             difference = (self.old[other] - halves[other])[where]

@@ -114,7 +114,7 @@ class Judge:
         if sight.view.past:
             known = self._uncovered or Uncovered.none(before.frame.shape)
             self._uncovered = known.followed(sight.view.past, before.shown_halves)
-            self._ghost += self._uncovered.left(sight.shown, sight.view.shown_halves)
+            self._ghost += self._uncovered.left(sight.shown, sight.view.shown_halves, sight.view.interior)
 
     @property
     def findings(self) -> Findings:

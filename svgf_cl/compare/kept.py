@@ -14,10 +14,11 @@ detail     display-referred       ``sum(l l1) / sum(l2 l1)``, l, l1 and l2 being
                                   picture and halves: how much of the finest contrast is left
 =========  =====================  =====================================================================================
 
-Sums are over the `SHARE` of the pixels or windows where h1 has most. The halves h1 and h2 of the truth are independent,
-as in `svgf_cl.compare.halves`. h1 chooses; its noise is in both sums alike, and that of h2 and of the picture has no
-direction in common with it. So noise of neither truth nor picture counts as contrast: h1 is what statistics calls an
-instrumental variable. Then the halves change places, and all is added up.
+Sums are over the `SHARE` of the pixels or windows where h1 has most; those of detail over all that are asked for. The
+halves h1 and h2 of the truth are independent, as in `svgf_cl.compare.halves`. h1 chooses; its noise is in both sums
+alike, and that of h2 and of the picture has no direction in common with it. So noise of neither truth nor picture
+counts as contrast: h1 is what statistics calls an instrumental variable. Then the halves change places, and all is
+added up.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ def contrast(light: Plane, halves: tuple[Plane, Plane], where: Mask) -> Share:
 
 def detail(shown: Linear, halves: Pair, where: Mask) -> Share:
     """How much of the finest contrast display-referred pictures (H, W, 3) keep, among the pixels `where` (H, W)."""
-    return slope(laplacians, shown, halves, where)
+    return sum((ratio(laplacians, shown, pair, where) for pair in (halves, halves[::-1])), Share())
 
 
 def slope(product: Product, picture: Linear, halves: Pair, where: Mask, least: float = 0.0) -> Share:
@@ -68,10 +69,17 @@ def slope(product: Product, picture: Linear, halves: Pair, where: Mask, least: f
     total = Share()
     for chooser, other in (halves, halves[::-1]):
         strongest = largest(product(chooser, chooser), where)
-        part, whole = (float(product(image, chooser)[strongest].sum()) for image in (picture, other))
-        if whole > least * np.count_nonzero(strongest):
-            total += Share(part, whole)
+        found = ratio(product, picture, (chooser, other), strongest)
+        if found.whole > least * np.count_nonzero(strongest):
+            total += found
     return total
+
+
+def ratio(product: Product, picture: Linear, halves: Pair, where: Mask) -> Share:
+    """Product of picture and first half over that of second and first half, over the pixels `where`."""
+    chooser, other = halves
+    part, whole = (float(product(image, chooser)[where].sum()) for image in (picture, other))
+    return Share(part, whole)
 
 
 def largest(strength: Plane, where: Mask) -> Mask:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from svgf_cl.compare.halves import Mask
-from svgf_cl.compare.kept import RADIUS, Plane, window_mean
+from svgf_cl.compare.kept import RADIUS, Plane, laplacian, window_mean
 from svgf_cl.frame import Frame
 from svgf_cl.io.display import Linear
 from svgf_cl.oracle.albedo import divisor
@@ -53,9 +53,11 @@ def reflecting(frame: Frame) -> Mask:
 
 
 def moving_texture(frame: Frame, radius: int = RADIUS) -> Mask:
-    """Where a pixel and all within `radius` show one surface of more than one colour, which moves, (H, W)."""
-    of_any_colours = one_surface(frame, radius, one_colour=False)
-    return of_any_colours & ~one_surface(frame, radius) & (speed(frame) > STILL)
+    """Where a pixel and all within `radius` show one surface that moves, and albedo bends by `SAME_ALBEDO`, (H, W)."""
+    if frame.albedo is None:
+        return np.zeros(frame.shape, np.bool_)
+    textured = np.abs(laplacian(frame.albedo)) > SAME_ALBEDO
+    return one_surface(frame, radius, one_colour=False) & textured & (speed(frame) > STILL)
 
 
 def without_albedo(picture: Linear, frame: Frame) -> Plane:

@@ -1,7 +1,7 @@
 """Thin geometry: bars, leaves and gaps of a few pixels, which a picture shows late, in part, or not at all.
 
 A pixel is thin where, along its row or its column, within `REACH` pixels on both sides there is another id, or on both
-sides something farther, or on both sides something nearer: by more than `EDGE` of the depth. So things, and gaps
+sides something farther, or on both sides something nearer (`svgf_cl.compare.edges`). So things, and gaps
 between them, are thin up to a width of 2 pixels, and the middle of 3. A slope is not, being farther on one side alone.
 
 ``unsettled`` is the share of thin pixels, over all frames, whose display-referred luminance differs from the truth's by
@@ -13,14 +13,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from svgf_cl.compare.edges import other
 from svgf_cl.compare.halves import Mask
 from svgf_cl.compare.share import Share
 from svgf_cl.frame import Frame
 from svgf_cl.io.display import Linear
-from svgf_cl.oracle.taps import Offset, luminance, shifted
+from svgf_cl.oracle.taps import Offset, luminance
 
 REACH = 2  # pixels
-EDGE = 0.1
 SETTLED = 0.1
 
 
@@ -41,14 +41,4 @@ def beside(frame: Frame, side: Offset) -> Mask:
     """Whether there is another id, something farther, something nearer within `REACH` on this side, (3, H, W)."""
     steps = [other(frame, (reach * side[0], reach * side[1])) for reach in range(1, REACH + 1)]
     mask: Mask = np.any(steps, axis=0)
-    return mask
-
-
-def other(frame: Frame, offset: Offset) -> Mask:
-    """Whether a pixel so far away has another id, is farther, is nearer, (3, H, W); all false beyond the border."""
-    y, x, inside = shifted(offset, frame.shape)
-    near = np.divide(1, frame.depth, out=np.zeros(frame.shape), where=frame.depth > 0)  # 0 in the sky
-    there, here = near[y, x], near
-    another = np.zeros(frame.shape, np.bool_) if frame.id is None else frame.id[y, x] != frame.id
-    mask: Mask = inside & np.stack((another, there < (1 - EDGE) * here, here < (1 - EDGE) * there))
     return mask

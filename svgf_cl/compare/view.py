@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from svgf_cl.compare.edges import interior
 from svgf_cl.compare.halves import Mask, Pair
 from svgf_cl.compare.kept import RADIUS, Plane
 from svgf_cl.compare.reprojection import Reprojection
@@ -82,6 +83,11 @@ class View:
     def textured(self) -> Mask:
         """Around which pixels a window shows one surface that moves, is no lamp, and has a texture."""
         return self.reflecting & moving_texture(self.frame, self._window)
+
+    @cached_property
+    def interior(self) -> Mask:
+        """Where no edge of geometry touches a pixel."""
+        return interior(self.frame)
 
     @cached_property
     def thin(self) -> Mask:

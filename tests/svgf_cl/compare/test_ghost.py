@@ -18,6 +18,7 @@ COLUMN = np.broadcast_to(np.arange(SHAPE[1]), SHAPE)
 RNG = np.random.default_rng(0)
 WALL = 0.2 + 0.2 * RNG.random((*SHAPE, 3))
 BOX = 0.6 + 0.3 * RNG.random((*SHAPE, 3))
+EVERYWHERE = np.ones(SHAPE, np.bool_)
 WIDTH = 20
 
 
@@ -53,23 +54,31 @@ def test_only_what_the_box_has_left_is_uncovered() -> None:
 @pytest.mark.parametrize("sigma", [0.0, 0.1])
 def test_a_ghost_is_the_share_that_was_mixed_in(share: float, sigma: float) -> None:
     picture = shown(18) + share * (shown(10) - shown(18))
-    assert uncovered(sigma).left(picture, noisy(shown(18), sigma)).value == pytest.approx(share, abs=0.3 * sigma + 1e-9)
+    assert uncovered(sigma).left(picture, noisy(shown(18), sigma), EVERYWHERE).value == pytest.approx(
+        share, abs=0.3 * sigma + 1e-9
+    )
 
 
 def test_noise_and_other_faults_of_a_picture_are_no_ghost() -> None:
     noise = RNG.normal(0, 0.1, (*SHAPE, 3))
-    assert uncovered().left(shown(18) + noise, noisy(shown(18), 0.0)).value == pytest.approx(0, abs=0.02)
+    assert uncovered().left(shown(18) + noise, noisy(shown(18), 0.0), EVERYWHERE).value == pytest.approx(0, abs=0.02)
     elsewhere = np.where((COLUMN < 10)[..., None], 1.0, shown(18))
-    assert uncovered().left(elsewhere, noisy(shown(18), 0.0)).value == 0
+    assert uncovered().left(elsewhere, noisy(shown(18), 0.0), EVERYWHERE).value == 0
+
+
+def test_only_what_is_inside_of_surfaces_counts() -> None:
+    picture = np.where((COLUMN == 17)[..., None], shown(10), shown(18))
+    assert uncovered().left(picture, noisy(shown(18), 0.0), COLUMN < 17).value == 0
+    assert uncovered().left(picture, noisy(shown(18), 0.0), COLUMN == 17).value == pytest.approx(1)
 
 
 def test_a_ghost_is_looked_for_in_so_many_frames() -> None:
     known, still = uncovered(), Reprojection.between(scene(18), scene(18))
     for _ in range(GHOST_FRAMES - 1):
         known = known.followed(still, noisy(shown(18), 0.0))
-        assert known.left(shown(10), noisy(shown(18), 0.0)).value == pytest.approx(1)
+        assert known.left(shown(10), noisy(shown(18), 0.0), EVERYWHERE).value == pytest.approx(1)
     known = known.followed(still, noisy(shown(18), 0.0))
-    assert math.isnan(known.left(shown(10), noisy(shown(18), 0.0)).value)
+    assert math.isnan(known.left(shown(10), noisy(shown(18), 0.0), EVERYWHERE).value)
 
 
 def test_it_moves_along_with_the_surface_that_was_uncovered() -> None:
@@ -81,6 +90,6 @@ def test_it_moves_along_with_the_surface_that_was_uncovered() -> None:
 def test_where_nothing_comes_into_view_there_is_no_figure() -> None:
     still = Reprojection.between(scene(18), scene(18))
     found = Uncovered.none(SHAPE).followed(still, noisy(shown(18), 0.0))
-    assert math.isnan(found.left(shown(10), noisy(shown(18), 0.0)).value)
+    assert math.isnan(found.left(shown(10), noisy(shown(18), 0.0), EVERYWHERE).value)
     turned = Reprojection.between(scene(18), replace(scene(18), motion=np.full((*SHAPE, 2), 1e4)))
     assert not Uncovered.none(SHAPE).followed(turned, noisy(shown(18), 0.0)).lately.any()
