@@ -10,6 +10,9 @@ frames, this one included. 0: nothing is left; 1: the old picture is still there
 moves along with the surface that was uncovered, as a filter's history does. Pixels beside an edge do not count: they
 may be mixtures of what is on both sides. The truth's own noise is kept out by its halves, as in
 `svgf_cl.compare.halves`: no two factors of a product are of one half.
+
+A blur across the edge of what has just moved on looks the same and counts. So does geometry thinner than a pixel, where
+rays are jittered: read the figure beside that of the noisy frames, which have no past.
 """
 
 from __future__ import annotations
