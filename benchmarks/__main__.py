@@ -13,7 +13,7 @@ from typing import Annotated
 
 import typer
 
-from benchmarks import bars, oidn, speed_against_error, versus_oidn
+from benchmarks import bars, speed_against_error, versus_oidn
 from benchmarks.command import run
 from benchmarks.footage import FOOTAGE
 from benchmarks.tracing import picture
@@ -24,6 +24,7 @@ from svgf_cl.bench.report import Section
 from svgf_cl.bench.results import Result, Run
 from svgf_cl.bench.suite import Suite
 from svgf_cl.cli.console import progress_bar, show
+from svgf_cl.compare import oidn
 from svgf_cl.compare.metrics import require_flip
 from svgf_cl.errors import SvgfError
 from svgf_cl.filters import DEFAULT, Settings

@@ -22,10 +22,10 @@ from benchmarks import steady_light
 from benchmarks.implementations import Environment, environments
 from svgf_cl import Frame, Kalman, Settings
 from svgf_cl.bench import error_to_oracle
-from svgf_cl.compare.rounding import SCALE_SHARE
 from svgf_cl.device import devices
 from svgf_cl.io.atomic import written_whole
 from svgf_cl.oracle.accuracy import DECISION, Deviation, deviations, worst
+from svgf_cl.oracle.rounding import SCALE_SHARE
 from svgf_cl_tracer import Shot, builtin_scene, render_sequence
 
 SHAPE = (36, 64)

@@ -8,13 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from benchmarks.footage import Footage
-from benchmarks.judge import Findings, Judge, View, switches_in
 from benchmarks.measurements import paired_medians
-from benchmarks.oidn import OidnFilter
 from benchmarks.rivals import Rival
 from svgf_cl import Denoiser
 from svgf_cl.compare.halves import Pair
+from svgf_cl.compare.judge import Findings, Judge, switches_in
 from svgf_cl.compare.metrics import psnr
+from svgf_cl.compare.oidn import OidnFilter
+from svgf_cl.compare.view import View
 from svgf_cl.io.display import Linear, display
 
 TRUTH = "truth"  # among pictures

@@ -1,6 +1,6 @@
 """The filters beside each other and beside Open Image Denoise: how good their pictures are, and how long they take.
 
-docs/benchmarks.md says how it is measured; `svgf_cl.compare` and `benchmarks.judge` define the measures.
+docs/benchmarks.md says how it is measured; `svgf_cl.compare` defines the measures.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ import typer
 from benchmarks.command import run
 from benchmarks.contest import TRUTH, compete
 from benchmarks.footage import Footage
-from benchmarks.oidn import require_oidn
 from benchmarks.presentation import markdown
 from benchmarks.provenance import provenance
 from benchmarks.quality_tables import scene_table, summary, write_json
@@ -24,6 +23,7 @@ from svgf_cl.bench.tables import Table
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import parse_size
 from svgf_cl.compare.metrics import SSIM_WINDOW, require_flip, require_ssim
+from svgf_cl.compare.oidn import require_oidn
 from svgf_cl.device import devices
 from svgf_cl.errors import SvgfError
 from svgf_cl.io.atomic import output_file, output_folder

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from benchmarks.contest import Result, Row
-from benchmarks.judge import Findings
 from benchmarks.presentation import MARK
 from svgf_cl.bench.tables import Table
+from svgf_cl.compare.judge import Findings
 from svgf_cl.io.atomic import written_whole
 
 RAYS = {False: "rays through pixel centres", True: "jittered rays"}

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.oidn import OidnFilter
 from svgf_cl import Denoiser
 from svgf_cl.bench.results import Result
 from svgf_cl.bench.rig import EVENT, HOST
+from svgf_cl.compare.oidn import OidnFilter
 from svgf_cl.frame import Shape, extent
 from svgf_cl.io.synthetic import PERIOD, room_frames
 

@@ -9,9 +9,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from benchmarks.oidn import OidnFilter, threads_beside
 from svgf_cl import Denoiser, Frame
 from svgf_cl.cli.options import parse_settings
+from svgf_cl.compare.oidn import OidnFilter, threads_beside
 from svgf_cl.errors import SvgfError
 from svgf_cl.filters import FILTERS, Eaw
 from svgf_cl.filters.filter import Filter

@@ -30,7 +30,6 @@ from benchmarks.bars import bar_table
 from benchmarks.command import run
 from benchmarks.footage import FOOTAGE, Footage
 from benchmarks.measurements import Quality, quality
-from benchmarks.oidn import QUALITIES, OidnFilter, threads_beside
 from benchmarks.presentation import markdown
 from benchmarks.provenance import provenance
 from benchmarks.race import Times, race, results
@@ -42,6 +41,7 @@ from svgf_cl.bench.tables import Table
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import SettingTexts, parse_settings, parse_size
 from svgf_cl.compare.metrics import require_flip
+from svgf_cl.compare.oidn import QUALITIES, OidnFilter, threads_beside
 from svgf_cl.device import devices
 from svgf_cl.filters import DEFAULT
 from svgf_cl.filters.filter import Filter

@@ -16,7 +16,7 @@ from svgf_cl.oracle.accuracy import Deviation, deviations
 from tests.denoising import vector_width
 from tests.frames import FULL, PLAIN, SPLIT, bumpy_sequence, changing_sequence
 
-# Largest error of any pixel, relative as defined in svgf_cl.compare.rounding; about three times what was measured.
+# Largest error of any pixel, relative as defined in svgf_cl.oracle.rounding; about three times what was measured.
 # float32 rounds by 2^-24 = 6e-8 of a value. Where an error exceeds a few of these, something amplifies it.
 TOLERANCES = {
     "normal": 4e-7,  # a handful of roundings

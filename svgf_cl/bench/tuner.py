@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 import pyopencl as cl
 
-from svgf_cl.compare.rounding import relative_error
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.device.apart import summary
 from svgf_cl.device.layout import Layout
@@ -25,6 +24,7 @@ from svgf_cl.device.tuning import VECTOR_WIDTHS, Tuning, default_tuning
 from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.synthetic import PERIOD, room_frames
+from svgf_cl.oracle.rounding import relative_error
 
 # In this order. Work-groups come last, as PoCL compiles all kernels anew for each: 2 s. None has more than 256 items:
 # GPUs run these whatever registers a kernel takes.
@@ -52,7 +52,7 @@ WORTHWHILE = 0.98  # of the default's time
 STEADY = 0.1
 
 # Tunings differ by rounding, and by more where rounding decides about a tap; a column of wrong pixels is beyond both.
-ROUNDING = 1e-4  # relative, as in svgf_cl.compare.rounding
+ROUNDING = 1e-4  # relative, as in svgf_cl.oracle.rounding
 DECIDED_OTHERWISE = 5e-4  # of the pixels
 
 

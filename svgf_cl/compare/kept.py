@@ -1,6 +1,6 @@
 """How much of the truth's contrast a picture keeps: the slope of the one on the other, where the truth has contrast.
 
-Both measures are shares: 1 where all is kept, 0 where the picture is flat; more than 1 where contrast is exaggerated.
+All measures are shares: 1 where all is kept, 0 where the picture is flat; more than 1 where contrast is exaggerated.
 
 =========  =====================  =====================================================================================
 measure    computed on            definition
@@ -10,12 +10,15 @@ sharpness  display-referred       ``sum(g . g1) / sum(g2 . g1)``, g, g1 and g2 b
 contrast   luminance of light     ``sum(cov(a / m, h1 / m1)) / sum(cov(h2 / m2, h1 / m1))`` over windows of 5x5 pixels,
            without albedo,        m, m1 and m2 being each one's mean in the window: lit minus shadow, relative to the
            linear                 light there, over that of the truth; wherever light varies over a surface
+detail     display-referred       ``sum(l l1) / sum(l2 l1)``, l, l1 and l2 being Laplacians of the luminance of
+                                  picture and halves: how much of the finest contrast is left
 =========  =====================  =====================================================================================
 
-Sums are over the `SHARE` of the pixels or windows where h1 has most. The halves h1 and h2 of the truth are independent,
-as in `svgf_cl.compare.halves`. h1 chooses; its noise is in both sums alike, and that of h2 and of the picture has no
-direction in common with it. So noise of neither truth nor picture counts as contrast: h1 is what statistics calls an
-instrumental variable. Then the halves change places, and all is added up.
+Sums are over the `SHARE` of the pixels or windows where h1 has most; those of detail over all that are asked for. The
+halves h1 and h2 of the truth are independent, as in `svgf_cl.compare.halves`. h1 chooses; its noise is in both sums
+alike, and that of h2 and of the picture has no direction in common with it. So noise of neither truth nor picture
+counts as contrast: h1 is what statistics calls an instrumental variable. Then the halves change places, and all is
+added up.
 """
 
 from __future__ import annotations
@@ -53,6 +56,11 @@ def contrast(light: Plane, halves: tuple[Plane, Plane], where: Mask) -> Share:
     return slope(relative_covariance, light, halves, where, FAINT**2)
 
 
+def detail(shown: Linear, halves: Pair, where: Mask) -> Share:
+    """How much of the finest contrast display-referred pictures (H, W, 3) keep, among the pixels `where` (H, W)."""
+    return sum((ratio(laplacians, shown, pair, where) for pair in (halves, halves[::-1])), Share())
+
+
 def slope(product: Product, picture: Linear, halves: Pair, where: Mask, least: float = 0.0) -> Share:
     """Slope of picture on truth, by a product (H, W) of two images, where its square is largest in the truth.
 
@@ -61,10 +69,17 @@ def slope(product: Product, picture: Linear, halves: Pair, where: Mask, least: f
     total = Share()
     for chooser, other in (halves, halves[::-1]):
         strongest = largest(product(chooser, chooser), where)
-        part, whole = (float(product(image, chooser)[strongest].sum()) for image in (picture, other))
-        if whole > least * np.count_nonzero(strongest):
-            total += Share(part, whole)
+        found = ratio(product, picture, (chooser, other), strongest)
+        if found.whole > least * np.count_nonzero(strongest):
+            total += found
     return total
+
+
+def ratio(product: Product, picture: Linear, halves: Pair, where: Mask) -> Share:
+    """Product of picture and first half over that of second and first half, over the pixels `where`."""
+    chooser, other = halves
+    part, whole = (float(product(image, chooser)[where].sum()) for image in (picture, other))
+    return Share(part, whole)
 
 
 def largest(strength: Plane, where: Mask) -> Mask:
@@ -88,6 +103,19 @@ def gradient(shown: Linear) -> NDArray[np.float64]:
     smooth_along = luminance[:, :-2] + 2 * luminance[:, 1:-1] + luminance[:, 2:]
     along, down = smooth_down[:, 2:] - smooth_down[:, :-2], smooth_along[2:] - smooth_along[:-2]
     return np.pad(np.stack((along, down), axis=-1) / 8, ((1, 1), (1, 1), (0, 0)))
+
+
+def laplacians(shown: Linear, chooser: Linear) -> Plane:
+    """Product of two pictures' Laplacians, (H, W)."""
+    return laplacian(shown) * laplacian(chooser)
+
+
+def laplacian(shown: Linear) -> Plane:
+    """Sum of the four neighbours' luminance less four times the pixel's own, (H, W); 0 at the picture's border."""
+    luminance = np.asarray(shown, np.float64) @ np.array(LUMINANCE)
+    along = luminance[1:-1, :-2] + luminance[1:-1, 2:]
+    down = luminance[:-2, 1:-1] + luminance[2:, 1:-1]
+    return np.pad(along + down - 4 * luminance[1:-1, 1:-1], 1)
 
 
 def relative_covariance(light: NDArray[np.floating], other: NDArray[np.floating]) -> Plane:

@@ -10,6 +10,7 @@ FLIP      display-referred  mean difference seen when flipping between the two, 
                             Andersson et al. 2020 (NVIDIA's ``flip-evaluator``); 0..1, 0 where equal
 relMSE    linear HDR        ``mean((a - b)**2 / (b**2 + 0.01))``, `b` the reference, as in Rousselle et al. 2011; 0
                             where equal; one bright dot can outweigh all else
+trimmed   linear HDR        relMSE without the `WORST` per cent of pixels, the channels of each averaged first
 temporal  display-referred  ``mean(|(a1 - a0) - (b1 - b0)|)`` over two consecutive frames: flicker and lag; the temporal
                             loss of Chaitanya et al. 2017; 0 where the error stands still
 ========  ================  ==========================================================================================
@@ -24,12 +25,15 @@ from collections.abc import Sequence
 from dataclasses import astuple, dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from svgf_cl.errors import SvgfError
 from svgf_cl.io.display import Linear, display
 
 # Least extent of a picture that scikit-image's Gaussian window of sigma 1.5 fits in.
 SSIM_WINDOW = 11
+
+WORST = 1  # per cent of pixels
 
 
 @dataclass(frozen=True)
@@ -121,5 +125,19 @@ def temporal_error(shown: tuple[Linear, Linear], wanted: tuple[Linear, Linear]) 
 
 def relmse(picture: Linear, reference: Linear) -> float:
     """Return the relative mean squared error of two linear pictures."""
+    return float(np.mean(relative_squares(picture, reference)))
+
+
+def trimmed_relmse(picture: Linear, reference: Linear) -> float:
+    """Return the relMSE of two linear pictures (H, W, 3) without the `WORST` per cent of pixels; NaN counts."""
+    of_pixels = np.sort(relative_squares(picture, reference).mean(axis=-1), axis=None)
+    if np.isnan(of_pixels[-1]):  # sorted last, it would be left out
+        return float("nan")
+    return float(np.mean(of_pixels[: of_pixels.size - of_pixels.size * WORST // 100]))
+
+
+def relative_squares(picture: Linear, reference: Linear) -> npt.NDArray[np.float64]:
+    """Return the squared error of each value, relative to the reference's square."""
     tested, truth = np.asarray(picture, np.float64), np.asarray(reference, np.float64)
-    return float(np.mean(np.square(tested - truth) / (np.square(truth) + 0.01)))
+    squares: npt.NDArray[np.float64] = np.square(tested - truth) / (np.square(truth) + 0.01)
+    return squares

@@ -9,13 +9,13 @@ import numpy as np
 import pyopencl as cl
 from numpy.typing import NDArray
 
-from svgf_cl.compare.rounding import counted_against, largest_channel
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.filters import Settings
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Frame
 from svgf_cl.oracle import oracle_of
+from svgf_cl.oracle.rounding import counted_against, largest_channel
 from svgf_cl.oracle.taps import Array
 from svgf_cl.oracle.temporal import Past, seen_guides
 
@@ -36,7 +36,7 @@ class Deviation:
     absolute : float
         Largest error of the pixels decided alike, in the stage's own unit.
     relative : float
-        The largest as described at `svgf_cl.compare.rounding.SCALE_SHARE`.
+        The largest as described at `svgf_cl.oracle.rounding.SCALE_SHARE`.
     ulps : float
         The largest in units in the last place of what the relative error counts against, as float32.
     decided_otherwise : float

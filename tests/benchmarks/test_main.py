@@ -12,7 +12,7 @@ pytest.importorskip("flip_evaluator")
 import typer
 
 from benchmarks import __main__ as everything
-from benchmarks import oidn, speed_against_error, versus_oidn
+from benchmarks import speed_against_error, versus_oidn
 from benchmarks.measurements import Quality
 from benchmarks.tracing import suite as tracing
 from benchmarks.versus_oidn import Comparison
@@ -20,6 +20,7 @@ from svgf_cl import SvgfError
 from svgf_cl.bench.results import Result, Run
 from svgf_cl.bench.rig import HOST
 from svgf_cl.bench.suite import Suite
+from svgf_cl.compare import oidn
 from tests.benchmarks.test_findings import FINDINGS
 from tests.benchmarks.tracing.made_up import tracer_results
 from tests.svgf_cl.bench.runs import whole_run

@@ -9,10 +9,28 @@ from pathlib import Path
 
 from benchmarks import quality_tables
 from benchmarks.contest import Result, Row
-from benchmarks.judge import Findings
 from benchmarks.presentation import MARK
+from svgf_cl.compare.judge import Findings
 
-GOOD = Findings(40.0, 0.99, 0.02, 0.01, 0.003, 0.002, -0.012, 0.97, 0.9, 0.8, (0, 3))
+GOOD = Findings(
+    psnr=40.0,
+    ssim=0.99,
+    flip=0.02,
+    relmse=0.01,
+    relmse_trimmed=0.005,
+    bias=-0.012,
+    temporal=0.003,
+    temporal_on_surfaces=0.002,
+    flicker=0.001,
+    warped=0.004,
+    edges=0.97,
+    shadows=0.9,
+    moving_shadows=0.8,
+    detail=0.7,
+    ghost=0.1,
+    unsettled=0.05,
+    lags=(0, 3),
+)
 BAD = replace(GOOD, psnr=20.0, flip=0.2, temporal=0.004, moving_shadows=math.nan, lags=(11, None))
 ROWS = {"noisy": Row(BAD, None, None), "svgf": Row(GOOD, 1.5, 1.25)}
 

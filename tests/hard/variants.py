@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from svgf_cl import Denoiser, Frame, Kalman, Settings
-from svgf_cl.compare.rounding import largest_channel
 from svgf_cl.filters.temporal import TemporalFilter
 from svgf_cl.frame import REQUIRED, Shape
 from svgf_cl.oracle import oracle_of
+from svgf_cl.oracle.rounding import largest_channel
 from tests.frames import FULL, SHAPE, SPLIT, only, wall
 
 # Share of pixels that may be further off: where a tap lies within rounding of a threshold, it counts for one alone.

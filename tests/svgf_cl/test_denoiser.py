@@ -18,11 +18,11 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from svgf_cl import ArgumentError, Denoiser, DeviceError, Eaw, Frame, Inputs, Kalman, Settings, SvgfError
-from svgf_cl.compare.rounding import largest_channel, relative_error
 from svgf_cl.device import devices
 from svgf_cl.device.layout import HALO, Layout
 from svgf_cl.frame import Shape
 from svgf_cl.oracle.accuracy import DECISION
+from svgf_cl.oracle.rounding import largest_channel, relative_error
 from svgf_cl.oracle.svgf import Oracle
 from tests.denoising import feed, vector_width
 from tests.faults import failing

@@ -105,3 +105,33 @@ def test_the_mean_is_that_of_the_window() -> None:
     assert means[4, 6] == pytest.approx(plane[2:7, 4:9].mean())
     assert not means[:2].any()
     assert not means[:, -2:].any()
+
+
+TEXTURE = 0.5 + 0.2 * np.sign(np.random.default_rng(11).random((60, 80, 1)) - 0.5) * np.ones(3)
+
+
+def detail(shown: np.ndarray, truth: tuple[np.ndarray, np.ndarray] = (TEXTURE, TEXTURE)) -> float:
+    return kept.detail(shown, truth, np.ones(TEXTURE.shape[:2], np.bool_)).value
+
+
+def test_a_faded_texture_keeps_its_share_of_detail() -> None:
+    assert [detail(0.5 + share * (TEXTURE - 0.5)) for share in (1, 0.3, 0)] == pytest.approx([1, 0.3, 0])
+    assert detail(TEXTURE + 0.1) == pytest.approx(1)
+
+
+def test_a_blurred_texture_loses_detail() -> None:
+    blurred = (TEXTURE + np.roll(TEXTURE, 1, axis=0) + np.roll(TEXTURE, 1, axis=1)) / 3
+    assert detail(blurred) < 0.5
+    assert detail((blurred + TEXTURE) / 2) == pytest.approx((detail(blurred) + 1) / 2)
+
+
+def test_noise_of_picture_and_truth_is_no_detail() -> None:
+    rng = np.random.default_rng(12)
+    picture, *truth = (TEXTURE + rng.normal(0, 0.05, TEXTURE.shape) for _ in range(3))
+    assert detail(picture, (truth[0], truth[1])) == pytest.approx(1, abs=0.05)
+
+
+def test_the_laplacian_is_that_of_luminance() -> None:
+    y, x = np.indices((8, 9))
+    bowl = (0.1 * x**2 + 0.02 * y**2 + x * y)[..., None] * np.ones(3)
+    np.testing.assert_allclose(kept.laplacian(bowl), np.pad(np.full((6, 7), 0.24), 1), atol=1e-12)

@@ -39,6 +39,21 @@ def test_what_is_brighter_than_white_counts_in_relmse_only() -> None:
     assert found.relmse == pytest.approx(9 / 4.01)
 
 
+def test_the_worst_hundredth_of_pixels_can_be_left_out() -> None:
+    dotted = grey(0.6, 20)
+    dotted[3, 4:8] = 1e3  # 4 of 400 pixels
+    assert metrics.trimmed_relmse(dotted, grey(0.5, 20)) == pytest.approx(0.01 / 0.26, rel=1e-5)
+    dotted[3, 8] = 5.5
+    assert metrics.trimmed_relmse(dotted, grey(0.5, 20)) == pytest.approx((395 * 0.01 + 25) / 396 / 0.26, rel=1e-5)
+    assert metrics.trimmed_relmse(dotted, dotted) == 0
+
+
+def test_nan_is_not_left_out_with_the_worst() -> None:
+    broken = grey(0.5)
+    broken[0, 0, 0] = np.nan
+    assert math.isnan(metrics.trimmed_relmse(broken, grey(0.5)))
+
+
 def test_exposure_brings_light_back_into_range() -> None:
     assert metrics.measure(grey(5.0), grey(2.0), exposure=-3).psnr == metrics.measure(grey(5 / 8), grey(2 / 8)).psnr
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from benchmarks import surfaces
 from svgf_cl import Frame
+from svgf_cl.compare import surfaces
 
 SHAPE = (9, 12)
 PLAIN: dict[str, Any] = {
@@ -54,6 +55,32 @@ def test_colours_of_a_surface_may_be_let_through() -> None:
 @pytest.mark.parametrize(("name", "other"), [("emission", 2.0), ("depth", np.inf)])
 def test_lamps_and_sky_are_left_out_with_what_touches_them(name: str, other: float) -> None:
     np.testing.assert_array_equal(surfaces.reflecting(changed(name, other, RIGHT))[4], np.arange(12) < 5)
+
+
+def test_a_texture_moves_where_its_surface_does() -> None:
+    moving = replace(changed("albedo", 0.6, RIGHT), motion=np.where(RIGHT[..., None], 0.0, (0.5, 0.0)))
+    np.testing.assert_array_equal(surfaces.moving_texture(moving)[4], np.arange(12) == 5)
+    assert not surfaces.moving_texture(changed("albedo", 0.6, RIGHT)).any()
+    assert not surfaces.moving_texture(changed("motion", 0.5, RIGHT)).any()
+
+
+@pytest.mark.parametrize("name", ["id", "albedo"])
+def test_without_ids_or_albedo_no_surface_is_known(name: str) -> None:
+    frame = replace(Frame(**PLAIN), motion=np.ones((*SHAPE, 2)), **{name: None})
+    assert not surfaces.one_surface(frame).any()
+    assert not surfaces.one_surface(frame, one_colour=False).any()
+    assert not surfaces.moving_texture(frame).any()
+
+
+def test_without_ids_nothing_is_still_and_without_emission_there_is_no_lamp() -> None:
+    plain = Frame(**PLAIN)
+    assert surfaces.still(plain, plain).all()
+    assert not surfaces.still(replace(plain, id=None), plain).any()
+    assert surfaces.reflecting(replace(plain, emission=None)).all()
+
+
+def test_without_albedo_light_is_all_there_is() -> None:
+    np.testing.assert_allclose(surfaces.without_albedo(np.full((*SHAPE, 3), 3.0), Frame(**PLAIN | {"albedo": None})), 3)
 
 
 def test_light_is_what_is_left_without_albedo() -> None:

@@ -1,4 +1,8 @@
-"""Where frames show one surface, light that changes, and no lamp."""
+"""Where frames show one surface, a texture that moves, light that changes, and no lamp.
+
+Frames may lack fields. Without ids or albedo nothing is known to be one surface, and without ids nothing to be what it
+was. Without emission there are no lamps.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from svgf_cl.compare.halves import Mask
-from svgf_cl.compare.kept import RADIUS, Plane, window_mean
+from svgf_cl.compare.kept import RADIUS, Plane, laplacian, window_mean
 from svgf_cl.frame import Frame
 from svgf_cl.io.display import Linear
 from svgf_cl.oracle.albedo import divisor
@@ -23,6 +27,8 @@ def one_surface(frame: Frame, radius: int = RADIUS, *, one_colour: bool = True) 
 
     With `one_colour` false, of any colours.
     """
+    if frame.id is None or frame.albedo is None:
+        return np.zeros(frame.shape, np.bool_)
     hit: Mask = frame.depth < np.inf
     same: Mask = hit.copy()
     for offset in square(radius):
@@ -36,7 +42,9 @@ def one_surface(frame: Frame, radius: int = RADIUS, *, one_colour: bool = True) 
 
 def reflecting(frame: Frame) -> Mask:
     """Where neither a pixel nor one of the eight around it shows a lamp or the sky, (H, W)."""
-    dark: Mask = (frame.emission == 0).all(axis=-1) & (frame.depth < np.inf)
+    dark: Mask = frame.depth < np.inf
+    if frame.emission is not None:
+        dark = dark & (frame.emission == 0).all(axis=-1)
     result: Mask = dark.copy()
     for offset in square(1):
         y, x, _ = shifted(offset, frame.shape)
@@ -44,15 +52,32 @@ def reflecting(frame: Frame) -> Mask:
     return result
 
 
+def moving_texture(frame: Frame, radius: int = RADIUS) -> Mask:
+    """Where a pixel and all within `radius` show one surface that moves, and albedo bends by `SAME_ALBEDO`, (H, W)."""
+    if frame.albedo is None:
+        return np.zeros(frame.shape, np.bool_)
+    textured = np.abs(laplacian(frame.albedo)) > SAME_ALBEDO
+    return one_surface(frame, radius, one_colour=False) & textured & (speed(frame) > STILL)
+
+
 def without_albedo(picture: Linear, frame: Frame) -> Plane:
     """Luminance of a picture's light, demodulated as the filters do it, (H, W)."""
-    return luminance(np.asarray(picture, np.float64) / divisor(np.asarray(frame.albedo, np.float64)))
+    light = np.asarray(picture, np.float64)
+    return luminance(light if frame.albedo is None else light / divisor(np.asarray(frame.albedo, np.float64)))
 
 
 def still(earlier: Frame, later: Frame) -> NDArray[np.float64]:
     """1 where the later frame shows what the earlier one does at that pixel, else 0, (H, W)."""
-    same: Mask = (earlier.id == later.id) & (np.hypot(later.motion[..., 0], later.motion[..., 1]) < STILL)
+    if earlier.id is None or later.id is None:
+        return np.zeros(later.shape)
+    same: Mask = (earlier.id == later.id) & (speed(later) < STILL)
     return same.astype(np.float64)
+
+
+def speed(frame: Frame) -> Plane:
+    """How far surfaces have moved since the frame before, in pixels, (H, W)."""
+    pixels: Plane = np.hypot(frame.motion[..., 0], frame.motion[..., 1])
+    return pixels
 
 
 def relit(earlier: tuple[Plane, Plane], later: tuple[Plane, Plane], unmoved: NDArray[np.float64]) -> Mask:

@@ -8,9 +8,9 @@ import sys
 import numpy as np
 import pytest
 
-from benchmarks import oidn
-from benchmarks.oidn import QUALITIES, OidnFilter, require_oidn
 from svgf_cl import Frame, SvgfError
+from svgf_cl.compare import oidn
+from svgf_cl.compare.oidn import QUALITIES, OidnFilter, require_oidn
 from svgf_cl.io.synthetic import room_frames
 
 SHAPE = (45, 80)
@@ -48,6 +48,6 @@ def test_errors_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_memory_is_that_of_the_network() -> None:
     """Its activations outweigh the images. In a process of its own: here it might get memory that others gave back."""
     pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
-    script = "from benchmarks.oidn import OidnFilter; print(OidnFilter((360, 640), 'fast', threads=1).nbytes)"
+    script = "from svgf_cl.compare.oidn import OidnFilter; print(OidnFilter((360, 640), 'fast', threads=1).nbytes)"
     nbytes = int(subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout)
     assert 100 < nbytes / (640 * 360) < 2000

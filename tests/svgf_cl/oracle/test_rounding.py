@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 
-from svgf_cl.compare.rounding import SCALE_SHARE, largest_channel, relative_error
 from svgf_cl.oracle.accuracy import DECISION
+from svgf_cl.oracle.rounding import SCALE_SHARE, largest_channel, relative_error
 
 
 def test_error_is_relative_to_the_value_or_to_the_mean() -> None:

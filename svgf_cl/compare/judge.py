@@ -1,0 +1,162 @@
+"""How good pictures of a sequence are: every measure of `svgf_cl.compare`, frame by frame, then of all frames.
+
+Each measure that has a way not to count the truth's own noise goes it. SSIM, FLIP, relMSE and the share that is
+unsettled have none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from svgf_cl.compare.ghost import Uncovered
+from svgf_cl.compare.halves import Pair
+from svgf_cl.compare.lag import lag, response, steps
+from svgf_cl.compare.metrics import decibels
+from svgf_cl.compare.score import Change, Score, Sight
+from svgf_cl.compare.share import Share
+from svgf_cl.compare.stability import Flicker, excess, root
+from svgf_cl.compare.view import View
+from svgf_cl.frame import LUMINANCE
+from svgf_cl.io.display import Linear
+
+
+@dataclass(frozen=True)
+class Findings:
+    """How good a filter's pictures of a sequence are. A figure is NaN where the frames show nothing it is about.
+
+    Parameters
+    ----------
+    psnr : float, dB
+        Mean over frames, without the truth's noise.
+    ssim, flip, relmse, relmse_trimmed : float
+        Means over frames.
+    bias : float
+        Light too much, as a share of that of the truth; negative where light is lost.
+    temporal, temporal_on_surfaces : float
+        Temporal error, root mean square, without the truth's noise.
+    flicker, warped : float
+        How much more than the truth pictures change, where surfaces rest and where they move; negative if less.
+    edges, shadows, moving_shadows, detail : float
+        Shares kept: of the sharpness of edges, of the contrast of light on a surface, of the same where the light has
+        just changed, of the finest contrast of textures that move.
+    ghost : float
+        Share of what was seen before that is left where something has come into view.
+    unsettled : float
+        Share of thin geometry that is plainly wrong.
+    lags : tuple of int or None
+        Frames until each switching of a lamp is followed; None where it is not, before the next or the end.
+    """
+
+    psnr: float
+    ssim: float
+    flip: float
+    relmse: float
+    relmse_trimmed: float
+    bias: float
+    temporal: float
+    temporal_on_surfaces: float
+    flicker: float
+    warped: float
+    edges: float
+    shadows: float
+    moving_shadows: float
+    detail: float
+    ghost: float
+    unsettled: float
+    lags: tuple[int | None, ...]
+
+
+class Judge:
+    """Judges the pictures that one filter makes of the frames of a sequence, one after another.
+
+    Parameters
+    ----------
+    switches : sequence of int
+        Among the judged frames, from 0, those before which a lamp was switched: `switches_in` of the truths.
+    """
+
+    def __init__(self, switches: Sequence[int] = ()) -> None:
+        self._switches = switches
+        self._scores: list[Score] = []
+        self._changes: list[Change] = []
+        self._responses: list[list[float]] = []
+        self._flicker = Flicker()
+        self._ghost = Share()
+        self._uncovered: Uncovered | None = None
+        self._last: Sight | None = None
+        self._unswitched: View | None = None
+
+    def see(self, picture: Linear, view: View) -> None:
+        """Judge the next linear picture, (H, W, 3)."""
+        sight = Sight(picture, view)
+        if self._last:
+            self._changes.append(Change.of(self._last, sight))
+            self._follow_lamps(sight, self._last.view)
+            self._follow_ghosts(sight, self._last.view)
+        resting = view.resting if self._last else np.ones(view.frame.shape, np.bool_)
+        self._flicker.see(sight.shown, view.shown_halves, resting)
+        self._scores.append(Score.of(sight))
+        self._last = sight
+
+    def _follow_lamps(self, sight: Sight, before: View) -> None:
+        if len(self._scores) in self._switches:
+            self._unswitched = before
+            self._responses.append([])
+        if self._unswitched:
+            where = self._unswitched.reflecting & sight.view.reflecting
+            followed = response(sight.picture, self._unswitched.halves, sight.view.halves, where)
+            self._responses[-1].append(followed.value)
+
+    def _follow_ghosts(self, sight: Sight, before: View) -> None:
+        if sight.view.past:
+            known = self._uncovered or Uncovered.none(before.frame.shape)
+            self._uncovered = known.followed(sight.view.past, before.shown_halves)
+            self._ghost += self._uncovered.left(sight.shown, sight.view.shown_halves, sight.view.interior)
+
+    @property
+    def findings(self) -> Findings:
+        """What was found so far; at least two pictures were seen."""
+        scores, changes, curves = self._scores, self._changes, self.curves
+        return Findings(
+            psnr=float(np.mean(curves["psnr"])),
+            ssim=float(np.mean(curves["ssim"])),
+            flip=float(np.mean(curves["flip"])),
+            relmse=float(np.mean(curves["relmse"])),
+            relmse_trimmed=float(np.mean([score.relmse_trimmed for score in scores])),
+            bias=total(score.brightness for score in scores).value - 1,
+            temporal=root(total(change.everywhere for change in changes).value),
+            temporal_on_surfaces=root(total(change.on_surfaces for change in changes).value),
+            flicker=self._flicker.value,
+            warped=excess(total(change.warped for change in changes), total(change.warped_truth for change in changes)),
+            edges=total(score.edges for score in scores).value,
+            shadows=total(score.shadows for score in scores).value,
+            moving_shadows=total(score.moving_shadows for score in scores).value,
+            detail=total(score.detail for score in scores).value,
+            ghost=self._ghost.value,
+            unsettled=total(score.unsettled for score in scores).value,
+            lags=tuple(lag(responses) for responses in self._responses),
+        )
+
+    @property
+    def curves(self) -> dict[str, list[float]]:
+        """Figures of each frame so far, by the key of their measure; no temporal error of the first, but NaN."""
+        return {
+            "psnr": [decibels(score.error.value) for score in self._scores],
+            "ssim": [score.ssim for score in self._scores],
+            "flip": [score.flip for score in self._scores],
+            "relmse": [score.relmse for score in self._scores],
+            "temporal": [float("nan"), *(root(change.everywhere.value) for change in self._changes)],
+        }
+
+
+def switches_in(truths: Sequence[Pair]) -> list[int]:
+    """Which frames, from 0, are those before which a lamp was switched, by the halves of each frame's truth."""
+    return steps([float(np.mean(0.5 * (first + second) @ np.array(LUMINANCE))) for first, second in truths])
+
+
+def total(shares: Iterable[Share]) -> Share:
+    """All shares together."""
+    return sum(shares, Share())
