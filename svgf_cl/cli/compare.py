@@ -1,60 +1,364 @@
-"""``svgf-cl compare``: how far pictures are from their references."""
+"""``svgf-cl compare``: filters beside each other on scenes or on a user's frames, or pictures against references."""
 
 from __future__ import annotations
 
+import shlex
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import date
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from svgf_cl.cli.console import show, tracked
-from svgf_cl.cli.options import Exposure, check_threshold
-from svgf_cl.compare.report import COLUMNS, measured, misses, pairs, table_rows
+from svgf_cl import __version__
+from svgf_cl.cli.console import progress_bar, show
+from svgf_cl.cli.options import Exposure, parse_settings, parse_size
+from svgf_cl.errors import SvgfError
+from svgf_cl.io.atomic import output_file, output_folder, require
+from svgf_cl.io.sequence import find_frames, frame_number
+
+if TYPE_CHECKING:
+    from svgf_cl.compare.footage import Footage
+    from svgf_cl.compare.limits import Limits
+    from svgf_cl.compare.page import Page, Scene
+    from svgf_cl.compare.rivals import Rival
+
+STDOUT = Path("-")  # as --json has it
+SCENE_FILES = (".gltf", ".glb", ".obj")
+SHOWN = ("psnr", "ssim", "flip", "relmse_trimmed", "temporal", "shadows", "moving_shadows", "ghost", "lag")
+BY_FRAME = ("psnr", "ssim", "flip", "relmse", "temporal")
+SETTLED = 8  # frames: histories are nearly as long then as they get
+PICTURES = "pictures"  # the rival's name where pictures were made before
+
+
+@dataclass(frozen=True)
+class Preset:
+    """How much a comparison on scenes takes on: the options' defaults, and those of --quick."""
+
+    scenes: tuple[str, ...]
+    size: str
+    judged: int
+    spp: int
+
+
+USUAL = Preset(("cornell", "glossy", "swing", "switch", "sliding", "fence", "fireflies", "static"), "640x360", 40, 128)
+QUICK = Preset(("cornell", "swing", "switch"), "320x180", 24, 64)
 
 
 def compare(
-    a: Annotated[
-        Path,
+    inputs: Annotated[
+        list[str],
         typer.Argument(
-            metavar="A", help="The picture to judge, or a folder with a sequence of them, such as frame.0000.exr."
+            metavar="[SCENE...|FRAMES|A B]",
+            help="Scenes to render; or, with --reference, the frames of one shot; or two pictures or folders of them, "
+            "the second being the reference of the first. By default built-in scenes.",
         ),
-    ],
-    b: Annotated[
-        Path,
-        typer.Argument(
-            metavar="B",
-            help="Its reference, or a folder of them. If the folder has reference.*.exr, its frame.*.exr are not read.",
+    ] = [],  # noqa: B006  # never changed; typer wants the default spelled here
+    filters: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME,...",
+            help="What to compare, such as svgf,taps=5x5,eaw,oidn: filters, each followed by its settings; oidn is "
+            "Open Image Denoise frame by frame, oidn+accumulation the same accumulated over time. The first is the one "
+            "that --fail-below tests. By default all that is installed.",
         ),
-    ],
-    min_psnr: Annotated[
-        float | None, typer.Option(metavar="DB", help="Least PSNR of any frame.", callback=check_threshold)
+    ] = "",
+    reference: Annotated[
+        Path | None, typer.Option(metavar="REF", help="References of the frames: a picture, or a folder of them.")
     ] = None,
-    min_ssim: Annotated[
-        float | None, typer.Option(metavar="0..1", help="Least SSIM of any frame.", callback=check_threshold)
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="DIR",
+            help="Where to write index.html, results.json, results.csv and figures; for scenes and frames "
+            "out/compare by default.",
+        ),
     ] = None,
-    max_relmse: Annotated[
-        float | None, typer.Option(metavar="ERROR", help="Greatest relMSE of any frame.", callback=check_threshold)
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Three scenes, small and of few samples: minutes in place of an hour.")
+    ] = False,
+    size: Annotated[str, typer.Option(metavar="WxH", help="Of rendered frames [640x360].")] = "",
+    frames: Annotated[
+        int | None, typer.Option(metavar="N", min=1, help="Frames to render [as many as show the scene].")
     ] = None,
+    judged: Annotated[
+        int | None, typer.Option(metavar="N", min=1, help="How many of the last frames are judged [40].")
+    ] = None,
+    spp: Annotated[int | None, typer.Option(metavar="N", min=2, help="Samples per pixel of the truth [128].")] = None,
+    jitter: Annotated[
+        bool, typer.Option(help="Move the rays within the pixel, and antialias over time; or do neither.")
+    ] = True,
     exposure: Exposure = 0.0,
+    fail_below: Annotated[
+        str,
+        typer.Option(metavar="MEASURE=X,...", help="Exit code 1 where the first filter has less, as psnr=30,ssim=0.9."),
+    ] = "",
+    fail_above: Annotated[
+        str, typer.Option(metavar="MEASURE=X,...", help="Exit code 1 where it has more, as relmse=0.1,ghost=0.2.")
+    ] = "",
+    junit: Annotated[Path | None, typer.Option(metavar="FILE", help="Also write these checks as JUnit XML.")] = None,
+    json: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Also write all figures as JSON there; '-' prints them and no tables."),
+    ] = None,
 ) -> None:
-    """Compare EXR pictures (R, G, B) with their references.
+    """Compare filters on scenes or on your own frames, or pictures with their references.
 
-    PSNR and SSIM compare the pictures as they are shown (exposed, clipped to 0..1, in sRGB), relMSE the linear HDR
-    values. Frames of two folders are paired by number; every reference needs its picture. Exit code 1 where a frame
-    misses a threshold.
+    Scenes are rendered at 1 sample per pixel, filtered, and judged against their path-traced truth, which is kept in
+    the user's cache folder. Frames are those that `svgf-cl denoise` takes. Pictures are EXR files (R, G, B). The page
+    index.html shows pictures, error maps, clips, temporal profiles, curves and tables, and needs nothing else. A scene
+    that is done is kept in DIR/parts: after a break the same command resumes.
+
+    PSNR, SSIM, FLIP and all that is seen are measured as shown: exposed, clipped to 0..1, in sRGB. relMSE and bias are
+    measured in linear light. docs/comparing.md has every measure. Frames of two folders are paired by number; every
+    reference needs its picture. With two pictures or folders the limits hold for every frame.
 
     \b
     Examples:
-      svgf-cl compare out/demo/denoised out/demo/reference
-      svgf-cl compare out/demo/denoised out/demo/reference --min-psnr 30 --min-ssim 0.9
-      svgf-cl compare mine.exr truth.exr --exposure 1
+      svgf-cl compare --quick
+      svgf-cl compare swing switch --filters kalman,svgf,oidn -o out/compare
+      svgf-cl compare my/frames --reference my/references
+      svgf-cl compare out/demo/denoised out/demo/reference --fail-below psnr=30,ssim=0.9
     """
-    found = pairs(a, b)
-    metrics = {name: measured(*pair, exposure) for name, pair in tracked(found.items(), len(found), "comparing")}
-    show(f"{a} against {b}", COLUMNS, table_rows(metrics))
-    missed = [
-        f"{name}: {complaint}" for name, m in metrics.items() for complaint in misses(m, min_psnr, min_ssim, max_relmse)
+    needs_packages()
+    from svgf_cl.compare.limits import Limits
+
+    limits = Limits.parse(fail_below, fail_above)
+    if junit and not limits:
+        raise SvgfError("--junit: expected --fail-below or --fail-above beside it, got none")
+    for file in (json, junit):
+        if file and file != STDOUT:
+            output_file(file)
+    preset = QUICK if quick else USUAL
+    job = of_pictures(inputs) if reference is None and are_pictures(inputs) else None
+    if job is None:
+        rivals = chosen_rivals(filters)
+        if reference is not None:
+            footages = [of_frames(inputs, reference)]
+        else:
+            footages = of_scenes(inputs or preset.scenes, preset, (size, frames, judged, spp), jitter=jitter)
+        output = output or Path("out/compare")
+    else:
+        if filters:
+            raise SvgfError(
+                "--filters: expected scenes, or frames with --reference, got pictures that are made already"
+            )
+        footages, rivals = [job], []
+    folder = output_folder(output) if output else None
+    scenes = [judge(footage, rivals, exposure, folder) for footage in footages]
+    page = page_of(scenes, exposure)
+    report(page, by_frame=job is not None, to_stdout=json == STDOUT)
+    write_files(page, folder, json)
+    finish(limits, scenes, junit, each_frame=job is not None)
+
+
+def needs_packages() -> None:
+    """Raise `SvgfError` where a package is missing without which nothing can be compared."""
+    from svgf_cl.compare.metrics import require_ssim, why_no_flip
+
+    require_ssim()
+    try:
+        import jinja2  # noqa: F401
+        import matplotlib  # noqa: F401
+    except ModuleNotFoundError as error:
+        raise SvgfError(f"compare needs more ({error}): pip install '.[metrics]' in a clone of svgf_cl") from error
+    if missing := why_no_flip():
+        typer.echo(f"FLIP is not measured: {missing}", err=True)
+
+
+def are_pictures(inputs: Sequence[str]) -> bool:
+    """Whether these are EXR files or folders of them, rather than scenes."""
+
+    def is_scene(text: str) -> bool:
+        path = Path(text)
+        is_described = path.is_dir() and (path / "scene.json").exists()
+        is_name = not path.exists() and len(path.parts) == 1 and not path.suffix
+        return is_described or is_name or path.suffix.lower() in SCENE_FILES
+
+    pictures = [text for text in inputs if not is_scene(text)]
+    if pictures and len(pictures) < len(inputs):
+        raise SvgfError(f"expected scenes or pictures, got both: {' '.join(inputs)}")
+    for text in pictures:
+        require(Path(text))
+    return bool(pictures)
+
+
+def of_pictures(inputs: Sequence[str]) -> Footage:
+    """Two pictures, or two folders of them."""
+    from svgf_cl.compare.recorded import Pictures, paired
+
+    if len(inputs) != 2:
+        raise SvgfError(
+            f"expected two pictures or folders, the second being the reference of the first, got {len(inputs)}; "
+            "frames to be filtered want --reference"
+        )
+    pictures, references = paired(Path(inputs[0]), Path(inputs[1]))
+    return Pictures({number: pictures[number] for number in references}, references)
+
+
+def of_frames(inputs: Sequence[str], reference: Path) -> Footage:
+    """A user's frames with references."""
+    from svgf_cl.compare.recorded import Recorded, by_number
+
+    if not inputs:
+        raise SvgfError("--reference: expected frames beside it, got none")
+    paths = {frame_number(path) or 0: path for path in find_frames([Path(text) for text in inputs])}
+    references = by_number(reference, "reference")
+    if len(references) == 1 and len(paths) == 1:
+        references = dict(zip(paths, references.values(), strict=True))
+    for number, path in references.items():
+        if number not in paths:
+            raise SvgfError(f"{path}: expected a frame number {number} among the frames, found none")
+    return Recorded(paths, references)
+
+
+def of_scenes(
+    names: Sequence[str],
+    preset: Preset,
+    given: tuple[str, int | None, int | None, int | None],
+    *,
+    jitter: bool,
+) -> list[Footage]:
+    """Shots of scenes; `given`: size, frames, judged and spp, where they are given."""
+    from svgf_cl.compare.footage import Choice, opener
+    from svgf_cl.compare.metrics import SSIM_WINDOW
+
+    size, frames, judged, spp = given
+    shape = parse_size(size or preset.size)
+    if min(shape) < SSIM_WINDOW:
+        raise SvgfError(f"--size: expected at least {SSIM_WINDOW}x{SSIM_WINDOW} pixels, which SSIM needs, got {size}")
+    choice = Choice(shape, frames, judged or preset.judged, spp or preset.spp, jitter)
+    open_footage = opener()
+    return [open_footage(name, choice) for name in names]
+
+
+def chosen_rivals(text: str) -> list[Rival]:
+    """What --filters says, or all that is installed."""
+    from svgf_cl.compare.rivals import parse_rivals, usual_rivals
+
+    return parse_rivals(text or usual_rivals(), parse_settings)
+
+
+def judge(footage: Footage, rivals: Sequence[Rival], exposure: float, folder: Path | None) -> Scene:
+    """One scene: the kept part of an earlier run, or a new one, which is kept."""
+    from svgf_cl.compare.contest import NOISY, compete
+    from svgf_cl.compare.record import part_name, read_part, write_part
+    from svgf_cl.compare.rivals import Noisy, makers
+
+    names = [each.name for each in rivals]
+    part = folder / "parts" / f"{part_name(footage.identity, names, exposure)}.json" if folder and rivals else None
+    if part and (kept := read_part(part)):
+        return kept
+    with progress_bar(footage.name, footage.steps + len(footage.numbers)) as advance:
+        if rivals:
+            working = {**makers(rivals, footage.shape, jitter=footage.jitter), NOISY: Noisy()}
+        else:
+            working = {PICTURES: Noisy()}
+        scene = compete(footage, working, exposure, advance)
+    if part:
+        output_folder(part.parent)
+        write_part(part, scene)
+    return scene
+
+
+def page_of(scenes: Sequence[Scene], exposure: float) -> Page:
+    """The page of all scenes."""
+    from svgf_cl.compare.page import Page
+    from svgf_cl.compare.record import measured
+    from svgf_cl.device.devices import default_device
+
+    about = {
+        "command": shlex.join(["svgf-cl", *sys.argv[1:]]),
+        "svgf_cl": __version__,
+        "date": date.today().isoformat(),
+        "shown and measured": f"exposed by {exposure:g} stops, clipped to 0..1, in sRGB",
+    }
+    if any(entry.milliseconds for scene in scenes for entry in scene.entries):
+        device = default_device()
+        about["device"] = f"{device.name}, {device.platform.version}, driver {device.driver_version}"
+    return Page("Comparison of filters", about, measured(scenes), scenes)
+
+
+def report(page: Page, *, by_frame: bool, to_stdout: bool) -> None:
+    """Print tables: of each scene or, of pictures, of each frame."""
+    from svgf_cl.compare.record import results
+
+    if to_stdout:
+        print(results(page), end="")
+        return
+    for scene in page.scenes:
+        if by_frame:
+            show(scene.name, *frame_table(page, scene))
+        else:
+            show(f"{scene.name}: {scene.note}", *scene_table(page, scene))
+
+
+def scene_table(page: Page, scene: Scene) -> tuple[list[str], list[list[str]]]:
+    """A row for each filter."""
+    columns = [each for each in page.measures if each.key in SHOWN]
+    rows = []
+    for entry in scene.entries:
+        if entry.values:
+            time = "" if entry.milliseconds is None else f"{entry.milliseconds:.1f}"
+            rows.append([entry.rival, *(spelled(each.spec, entry.values.get(each.key)) for each in columns), time])
+    return ["filter", *(each.title for each in columns), "ms"], rows
+
+
+def frame_table(page: Page, scene: Scene) -> tuple[list[str], list[list[str]]]:
+    """A row for each frame, and their mean."""
+    (entry,) = [each for each in scene.entries if each.values]
+    columns = [each for each in page.measures if each.key in BY_FRAME]
+    rows = [
+        [str(number), *(spelled(each.spec, entry.curves[each.key][index]) for each in columns)]
+        for index, number in enumerate(scene.frames)
     ]
-    for line in missed:
-        typer.echo(line, err=True)
-    raise typer.Exit(1 if missed else 0)
+    rows.append(["all", *(spelled(each.spec, entry.values.get(each.key)) for each in columns)])
+    return ["frame", *(each.title for each in columns)], rows
+
+
+def spelled(spec: str, value: float | None) -> str:
+    """A figure; nothing where there is none."""
+    return "" if value is None or value != value else format(value, spec)
+
+
+def write_files(page: Page, folder: Path | None, json: Path | None) -> None:
+    """Write the page and all figures."""
+    from svgf_cl.compare import page as pages
+    from svgf_cl.compare.figures import figure
+    from svgf_cl.compare.record import results, table, write_text
+    from svgf_cl.io.display import write_image
+
+    if json and json != STDOUT:
+        write_text(json, results(page))
+    if folder is None:
+        return
+    pages.write(page, folder / "index.html")
+    write_text(folder / "results.json", results(page))
+    write_text(folder / "results.csv", table(page))
+    for number, scene in enumerate(page.scenes, 1):
+        write_image(output_folder(folder / "figures") / f"{number:02d}.{file_name(scene.name)}.png", figure(scene))
+    typer.echo(f"{folder}: index.html, results.json, results.csv, figures", err=json == STDOUT)
+
+
+def file_name(name: str) -> str:
+    """A scene's name with nothing in it that a file's name cannot have."""
+    return "".join(char if char.isalnum() or char in "-_" else "_" for char in name)[:60]
+
+
+def finish(limits: Limits, scenes: Sequence[Scene], junit: Path | None, *, each_frame: bool) -> None:
+    """Leave with exit code 1 where the first filter is beyond a limit, a line for each on stderr."""
+    from svgf_cl.gate import write_junit
+
+    checks = [
+        check for scene in scenes for check in limits.checks(scene, scene.entries[0].rival, each_frame=each_frame)
+    ]
+    if junit:
+        write_junit(junit, "svgf-cl compare", checks)
+    failed = [check for check in checks if check.complaint]
+    for check in failed:
+        typer.echo(f"{check.group}: {check.complaint}", err=True)
+    raise typer.Exit(1 if failed else 0)

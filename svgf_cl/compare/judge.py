@@ -81,7 +81,7 @@ class Judge:
     def __init__(self, switches: Sequence[int] = ()) -> None:
         self._switches = switches
         self._scores: list[Score] = []
-        self._changes: list[Change] = []
+        self._changes: dict[int, Change] = {}  # by number of the later picture, from 0
         self._responses: list[list[float]] = []
         self._flicker = Flicker()
         self._ghost = Share()
@@ -92,8 +92,8 @@ class Judge:
     def see(self, picture: Linear, view: View) -> None:
         """Judge the next linear picture, (H, W, 3)."""
         sight = Sight(picture, view)
-        if self._last:
-            self._changes.append(Change.of(self._last, sight))
+        if self._last and view.earlier:
+            self._changes[len(self._scores)] = Change.of(self._last, sight)
             self._follow_lamps(sight, self._last.view)
             self._follow_ghosts(sight, self._last.view)
         resting = view.resting if self._last else np.ones(view.frame.shape, np.bool_)
@@ -118,8 +118,8 @@ class Judge:
 
     @property
     def findings(self) -> Findings:
-        """What was found so far; at least two pictures were seen."""
-        scores, changes, curves = self._scores, self._changes, self.curves
+        """What was found so far."""
+        scores, changes, curves = self._scores, self._changes.values(), self.curves
         return Findings(
             psnr=float(np.mean(curves["psnr"])),
             ssim=float(np.mean(curves["ssim"])),
@@ -142,14 +142,18 @@ class Judge:
 
     @property
     def curves(self) -> dict[str, list[float]]:
-        """Figures of each frame so far, by the key of their measure; no temporal error of the first, but NaN."""
+        """Figures of each frame so far, by the key of their measure; the temporal error behind a gap is NaN."""
         return {
             "psnr": [decibels(score.error.value) for score in self._scores],
             "ssim": [score.ssim for score in self._scores],
             "flip": [score.flip for score in self._scores],
             "relmse": [score.relmse for score in self._scores],
-            "temporal": [float("nan"), *(root(change.everywhere.value) for change in self._changes)],
+            "temporal": [self._temporal(number) for number in range(len(self._scores))],
         }
+
+    def _temporal(self, number: int) -> float:
+        change = self._changes.get(number)
+        return root(change.everywhere.value) if change else float("nan")
 
 
 def switches_in(truths: Sequence[Pair]) -> list[int]:

@@ -98,15 +98,35 @@ def require_ssim() -> None:
 
 def flip(shown: Linear, wanted: Linear) -> float:
     """Return the mean FLIP error of two display-referred pictures."""
+    if np.isnan(shown).any() or np.isnan(wanted).any():
+        return float("nan")  # the library scores a NaN like a colour
+    return _flip(shown, wanted, in_colour=False)[1]
+
+
+def flip_map(shown: Linear, wanted: Linear) -> npt.NDArray[np.uint8]:
+    """Return FLIP's error of each pixel of two display-referred pictures as (H, W, 3) colours, dark to bright."""
+    colours, _ = _flip(shown, wanted, in_colour=True)
+    return np.rint(255 * np.clip(colours, 0, 1)).astype(np.uint8)
+
+
+def _flip(shown: Linear, wanted: Linear, *, in_colour: bool) -> tuple[npt.NDArray[np.float32], float]:
+    """The library's map, and the mean error."""
     require_flip()
     import flip_evaluator
 
-    if np.isnan(shown).any() or np.isnan(wanted).any():
-        return float("nan")  # the library scores a NaN like a colour
-    _, error, _ = flip_evaluator.evaluate(
-        np.asarray(wanted, np.float32), np.asarray(shown, np.float32), "LDR", applyMagma=False
+    errors, mean_error, _ = flip_evaluator.evaluate(
+        np.asarray(wanted, np.float32), np.asarray(shown, np.float32), "LDR", applyMagma=in_colour
     )
-    return float(error)
+    return errors, float(mean_error)
+
+
+def why_no_flip() -> str:
+    """Why FLIP cannot be measured here; nothing where it can."""
+    try:
+        require_flip()
+    except SvgfError as error:
+        return str(error)
+    return ""
 
 
 def require_flip() -> None:
@@ -114,7 +134,9 @@ def require_flip() -> None:
     try:
         import flip_evaluator  # noqa: F401
     except ModuleNotFoundError as error:
-        raise SvgfError(f"FLIP needs flip-evaluator ({error}): pip install '.[bench]' in a clone of svgf_cl") from error
+        raise SvgfError(
+            f"FLIP needs flip-evaluator ({error}): pip install '.[metrics]' in a clone of svgf_cl"
+        ) from error
 
 
 def temporal_error(shown: tuple[Linear, Linear], wanted: tuple[Linear, Linear]) -> float:

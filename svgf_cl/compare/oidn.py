@@ -68,9 +68,10 @@ class OidnFilter:
         self.nbytes: int = process.memory_info().rss - before
 
     def load(self, frame: Frame) -> None:
-        """Copy in what the filter reads of `frame`, which must have color and albedo."""
+        """Copy in what the filter reads of `frame`; without albedo, surfaces are white."""
         for name in INPUTS:
-            self._images[name][:] = getattr(frame, name)
+            given = getattr(frame, name)
+            self._images[name][:] = 1.0 if given is None else given
 
     def execute(self) -> None:
         """Filter what was loaded; wait for the end."""
@@ -85,6 +86,10 @@ class OidnFilter:
         """Filter one frame; return the result, (H, W, 3), in memory of its own."""
         self.load(frame)
         self.execute()
+        return self.result()
+
+    def result(self) -> npt.NDArray[np.float32]:
+        """What was made last, (H, W, 3), in memory of its own."""
         self.check()
         result: npt.NDArray[np.float32] = self._images[OUTPUT].copy()
         return result

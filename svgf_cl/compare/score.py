@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import nan
 
 import numpy as np
 
 from svgf_cl.compare.halves import brightness, squared_change, squared_error
 from svgf_cl.compare.kept import contrast, detail, sharpness
-from svgf_cl.compare.metrics import flip, relmse, ssim, trimmed_relmse
+from svgf_cl.compare.metrics import flip, relmse, ssim, trimmed_relmse, why_no_flip
 from svgf_cl.compare.share import Share
 from svgf_cl.compare.stability import residual
 from svgf_cl.compare.thin import unsettled
@@ -59,7 +60,7 @@ class Score:
         light = view.light_in(picture)
         return cls(
             ssim=ssim(shown, view.shown),
-            flip=flip(shown, view.shown),
+            flip=nan if why_no_flip() else flip(shown, view.shown),
             relmse=relmse(picture, view.truth),
             relmse_trimmed=trimmed_relmse(picture, view.truth),
             error=squared_error(shown, view.shown_halves),

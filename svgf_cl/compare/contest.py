@@ -1,0 +1,180 @@
+"""One scene's frames, made into pictures by all rivals by turns, and judged."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from statistics import median
+
+import numpy as np
+
+from svgf_cl.compare import imagery
+from svgf_cl.compare.footage import Footage
+from svgf_cl.compare.halves import Pair
+from svgf_cl.compare.imagery import Piece
+from svgf_cl.compare.judge import Judge, switches_in
+from svgf_cl.compare.measures import MEASURES, value
+from svgf_cl.compare.metrics import psnr
+from svgf_cl.compare.page import Entry, Scene
+from svgf_cl.compare.rivals import Maker
+from svgf_cl.compare.view import View
+from svgf_cl.frame import Frame
+from svgf_cl.io.display import Bytes, Linear, display, to_bytes
+from svgf_cl.io.panels import worst_piece
+
+NOISY, REFERENCE = "noisy", "reference"
+
+
+@dataclass
+class Gallery:
+    """What is kept of one rival's pictures.
+
+    Parameters
+    ----------
+    piece : Piece
+    pieces, rows : list of (h, w, 3) and (W, 3) 8-bit
+        Of all judged frames.
+    shown : (H, W, 3) 8-bit, optional
+        The frame that is shown whole.
+    """
+
+    piece: Piece
+    pieces: list[Bytes] = field(default_factory=list)
+    rows: list[Bytes] = field(default_factory=list)
+    shown: Bytes | None = None
+
+    def see(self, picture: Bytes, *, whole: bool) -> None:
+        """Keep what is needed of the next picture."""
+        self.pieces.append(self.piece.of(picture).copy())
+        self.rows.append(picture[self.piece.row].copy())
+        if whole:
+            self.shown = picture
+
+
+@dataclass
+class Contestant:
+    """A rival at work.
+
+    Parameters
+    ----------
+    maker : Maker
+    judge : Judge
+    gallery : Gallery, optional
+        From the first judged frame on.
+    times : list of float, ms
+        Of judged frames.
+    """
+
+    maker: Maker
+    judge: Judge
+    gallery: Gallery | None = None
+    times: list[float] = field(default_factory=list)
+
+    def see(self, picture: Linear, view: View) -> None:
+        """Judge the picture of a frame."""
+        self.judge.see(picture, view)
+        if self.maker.milliseconds is not None:
+            self.times.append(self.maker.milliseconds)
+
+
+def compete(footage: Footage, makers: Mapping[str, Maker], exposure: float, advance: Callable[[], None]) -> Scene:
+    """Let all rivals, new ones, denoise a footage frame by frame.
+
+    Parameters
+    ----------
+    footage : Footage
+    makers : mapping of str to Maker
+        The first is the one under test: it chooses the piece that clips show, where it is worst.
+    exposure : float, stops
+        All light is multiplied by ``2**exposure`` before it is measured or shown.
+    advance : callable
+        Called ``footage.steps + len(footage.numbers)`` times.
+
+    Returns
+    -------
+    Scene
+        With the noisy frames first and the reference last among its entries.
+    """
+    gain = 2.0**exposure
+    truths = {number: (gain * first, gain * second) for number, (first, second) in footage.truths(advance).items()}
+    judged = list(footage.judged)
+    shown = judged[len(judged) // 2]
+    switches = switches_in([truths[number] for number in judged])
+    contestants = {name: Contestant(maker, Judge(switches)) for name, maker in makers.items()}
+    reference = None
+    before: tuple[int, Frame] | None = None
+    for number, frame in zip(footage.numbers, footage.frames(), strict=True):
+        made = {name: gain * np.asarray(each.maker.denoise(frame)) for name, each in contestants.items()}
+        if number in truths:
+            earlier = (before[1], truths[before[0]]) if before and before[0] == number - 1 else None
+            view = View(frame, truths[number], footage.jitter, earlier)
+            wanted = to_bytes(view.truth)
+            pictures = {name: to_bytes(picture) for name, picture in made.items()}
+            if reference is None:
+                reference = Gallery(piece_to_show(pictures, wanted))
+            reference.see(wanted, whole=number == shown)
+            for name, each in contestants.items():
+                each.see(made[name], view)
+                each.gallery = each.gallery or Gallery(reference.piece)
+                each.gallery.see(pictures[name], whole=number == shown)
+            before = number, frame
+        advance()
+    if reference is None or reference.shown is None:
+        raise ValueError(f"{footage.name}: expected a truth of at least one frame")
+    wanted = reference.shown
+    entries = [entry(name, each, wanted) for name, each in contestants.items()]
+    return Scene(
+        name=footage.name,
+        note=note_of(footage, truths),
+        frames=judged,
+        shown=shown,
+        size=footage.shape,
+        crop=reference.piece.crop,
+        row=reference.piece.row,
+        entries=[*entries, reference_entry(reference, wanted)],
+        reference=REFERENCE,
+        noisy=NOISY if NOISY in makers else None,
+    )
+
+
+def piece_to_show(pictures: Mapping[str, Bytes], wanted: Bytes) -> Piece:
+    """Where the first rival after the noisy frames is worst."""
+    tested = next((name for name in pictures if name != NOISY), NOISY)
+    rows, columns = worst_piece(pictures[tested], wanted, imagery.PIECES)
+    return Piece(rows, columns)
+
+
+def entry(name: str, contestant: Contestant, wanted: Bytes) -> Entry:
+    """What a page shows of one rival."""
+    gallery, judge = contestant.gallery, contestant.judge
+    if gallery is None or gallery.shown is None:
+        raise ValueError(f"{name}: expected a picture of the frame that is shown")
+    found = judge.findings
+    return Entry(
+        rival=name,
+        values={each.key: value(found, each.key) for each in MEASURES},
+        curves=judge.curves,
+        milliseconds=median(contestant.times) if contestant.times else None,
+        picture=imagery.encoded(gallery.shown),
+        heat=imagery.error_map(gallery.shown, wanted),
+        **moving(gallery),
+    )
+
+
+def reference_entry(gallery: Gallery, wanted: Bytes) -> Entry:
+    """What a page shows of the reference."""
+    return Entry(REFERENCE, {}, {}, None, imagery.encoded(wanted), None, **moving(gallery))
+
+
+def moving(gallery: Gallery) -> dict[str, bytes | None]:
+    """Clip and profile, where there are frames to move."""
+    if len(gallery.rows) < 2:
+        return {"clip": None, "profile": None}
+    return {"clip": imagery.clip(gallery.pieces), "profile": imagery.profile(gallery.rows)}
+
+
+def note_of(footage: Footage, truths: Mapping[int, Pair]) -> str:
+    """The footage's own remark, and how far the halves of the truth are apart, where there are two."""
+    apart = [psnr(display(first), display(second)) for first, second in truths.values()]
+    noise = f"halves of the truth differ by {np.mean(apart):.1f} dB" if np.isfinite(apart).all() else ""
+    return "; ".join(text for text in (footage.note, noise) if text)

@@ -1,0 +1,77 @@
+"""What a page shows of a rival's pictures: one of them, its error map, a piece of all, and a row of all."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from PIL import Image
+
+from svgf_cl.compare.metrics import flip_map, why_no_flip
+from svgf_cl.io.display import Bytes
+
+QUALITY = 92  # of a WebP: nothing is seen of it beside noise
+FPS = 8.0
+CLIP_HEIGHT = 240  # pixels at least: small pieces are magnified
+ROW_HEIGHT = 6  # pixels of a frame in a profile
+PIECES = 4  # of a picture, along each side
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A part of a picture: rows and columns, and the row whose change over time is shown.
+
+    Parameters
+    ----------
+    rows, columns : slice
+    """
+
+    rows: slice
+    columns: slice
+
+    @property
+    def crop(self) -> tuple[int, int, int, int]:
+        """Left edge, top edge, width and height."""
+        x, y = self.columns.start, self.rows.start
+        return x, y, self.columns.stop - x, self.rows.stop - y
+
+    @property
+    def row(self) -> int:
+        """Through its middle."""
+        return (self.rows.start + self.rows.stop) // 2
+
+    def of(self, picture: Bytes) -> Bytes:
+        """The part of a picture (H, W, 3)."""
+        return picture[self.rows, self.columns]
+
+
+def encoded(picture: Bytes) -> bytes:
+    """A picture (H, W, 3) as a WebP file."""
+    file = io.BytesIO()
+    Image.fromarray(picture).save(file, format="WEBP", quality=QUALITY)
+    return file.getvalue()
+
+
+def error_map(shown: Bytes, wanted: Bytes) -> bytes | None:
+    """FLIP's map of the difference between two shown pictures (H, W, 3) as a WebP file; None where FLIP is missing."""
+    return None if why_no_flip() else encoded(flip_map(shown / 255.0, wanted / 255.0))
+
+
+def clip(pieces: Sequence[Bytes]) -> bytes:
+    """Pieces of consecutive pictures as an animated WebP file."""
+    height, width, _ = pieces[0].shape
+    times = max(1, -(-CLIP_HEIGHT // height))
+    size = (times * width, times * height)
+    first, *rest = (Image.fromarray(piece).resize(size, Image.Resampling.NEAREST) for piece in pieces)
+    file = io.BytesIO()
+    first.save(
+        file, format="WEBP", save_all=True, append_images=rest, duration=round(1000 / FPS), loop=0, quality=QUALITY
+    )
+    return file.getvalue()
+
+
+def profile(rows: Sequence[Bytes]) -> bytes:
+    """The same row (W, 3) of consecutive pictures, one below the other, as a WebP file."""
+    return encoded(np.repeat(np.stack(rows), ROW_HEIGHT, axis=0))

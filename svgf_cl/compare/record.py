@@ -1,0 +1,141 @@
+"""What a comparison found, as files: JSON, CSV, and the parts by which a run that was broken off is resumed."""
+
+from __future__ import annotations
+
+import base64
+import csv
+import hashlib
+import io
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any
+
+import svgf_cl
+from svgf_cl.compare.measures import MEASURES
+from svgf_cl.compare.page import Entry, Page, Scene
+from svgf_cl.device.tuning import kernels_digest
+from svgf_cl.errors import FileError
+from svgf_cl.io.atomic import read_json, written_whole
+
+IMAGES = ("picture", "heat", "clip", "profile")  # of an `Entry`
+NEVER = "inf"  # what JSON has no number for; a value that was not measured is null
+
+
+def results(page: Page) -> str:
+    """All figures as JSON."""
+    scenes = [
+        {
+            "name": scene.name,
+            "note": scene.note,
+            "size": list(reversed(scene.size)),
+            "frames": list(scene.frames),
+            "filters": {each.rival: figures(each) for each in scene.entries if each.values},
+        }
+        for scene in page.scenes
+    ]
+    measures = {each.key: {"title": each.title, "unit": each.unit, "meaning": each.meaning} for each in page.measures}
+    record = {"about": dict(page.about), "measures": measures, "scenes": scenes}
+    return json.dumps(record, indent=1, allow_nan=False) + "\n"
+
+
+def figures(entry: Entry) -> dict[str, Any]:
+    """What was measured of a rival."""
+    return {
+        "milliseconds": entry.milliseconds,
+        "values": {key: plain(value) for key, value in entry.values.items()},
+        "curves": {key: [plain(value) for value in values] for key, values in entry.curves.items()},
+    }
+
+
+def plain(value: float | None) -> float | str | None:
+    """A number as JSON has it."""
+    if value is None or math.isnan(value):
+        return None
+    return value if math.isfinite(value) else NEVER if value > 0 else f"-{NEVER}"
+
+
+def table(page: Page) -> str:
+    """All values as CSV: one row for each scene and filter."""
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    keys = [each.key for each in page.measures]
+    writer.writerow(["scene", "filter", *keys, "milliseconds"])
+    for scene in page.scenes:
+        for entry in scene.entries:
+            if entry.values:
+                found = [plain(entry.values.get(key)) for key in keys]
+                writer.writerow([scene.name, entry.rival, *found, entry.milliseconds])
+    return file.getvalue()
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text, whole or not at all."""
+    with written_whole(path) as aside:
+        aside.write_text(text, encoding="utf-8")
+
+
+def part_name(footage_identity: str, rivals: Sequence[str], exposure: float) -> str:
+    """Name the part of a run that has all its own inputs, and this state of svgf_cl, in common with it."""
+    code = hashlib.sha256(kernels_digest().encode())
+    for source in sorted(Path(svgf_cl.__file__).parent.rglob("*.py")):
+        code.update(source.read_bytes())
+    inputs = json.dumps([footage_identity, list(rivals), exposure, code.hexdigest()])
+    return hashlib.sha256(inputs.encode()).hexdigest()[:24]
+
+
+def write_part(path: Path, scene: Scene) -> None:
+    """Keep a scene that is done."""
+    record = asdict(scene)
+    for entry in record["entries"]:
+        entry |= {name: entry[name] and base64.b64encode(entry[name]).decode("ascii") for name in IMAGES}
+        entry["values"] = {key: plain(value) for key, value in entry["values"].items()}
+        entry["curves"] = {key: [plain(value) for value in values] for key, values in entry["curves"].items()}
+    write_text(path, json.dumps(record))
+
+
+def read_part(path: Path) -> Scene | None:
+    """The scene that an earlier run has kept there; None where there is none, or it cannot be read."""
+    if not path.exists():
+        return None
+    try:
+        record = read_json(path)
+        entries = [read_entry(each) for each in record.pop("entries")]
+        names = {each.name for each in fields(Scene)}
+        crop = tuple(record["crop"]) if record["crop"] else None
+        return Scene(
+            **{k: v for k, v in record.items() if k in names}
+            | {"crop": crop, "size": tuple(record["size"]), "entries": entries}
+        )
+    except (FileError, KeyError, TypeError, ValueError):
+        return None
+
+
+def read_entry(record: dict[str, Any]) -> Entry:
+    """One rival of a kept scene."""
+    images = {name: record[name] and base64.b64decode(record[name]) for name in IMAGES}
+    values = {key: number(value) for key, value in record["values"].items()}
+    curves = {key: [number(value) for value in each] for key, each in record["curves"].items()}
+    return Entry(**record | images | {"values": values, "curves": curves})
+
+
+def number(value: float | str | None) -> float:
+    """What `plain` wrote."""
+    return math.nan if value is None else float(value)
+
+
+def measured(scenes: Sequence[Scene]) -> list[Any]:
+    """The measures of which any rival of any scene has a value."""
+
+    def has(key: str) -> bool:
+        entries = (entry for scene in scenes for entry in scene.entries)
+        return any(not math.isnan(number(entry.values.get(key))) for entry in entries)
+
+    return [each for each in MEASURES if has(each.key)]
+
+
+def about(command: str, more: Mapping[str, str]) -> dict[str, str]:
+    """What stands beside every figure."""
+    return {"command": command, "svgf_cl": svgf_cl.__version__, **more}
