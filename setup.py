@@ -12,5 +12,9 @@ setup(
         *find_packages(where="tracer"),
     ],
     package_dir={"svgf_cl.kernels": "kernels", "svgf_cl_tracer": "tracer/svgf_cl_tracer"},
-    package_data={"svgf_cl.kernels": ["*.cl", "*.clh"], "svgf_cl.bench": ["*.cl", "*.html"]},
+    package_data={
+        "svgf_cl.kernels": ["*.cl", "*.clh"],
+        "svgf_cl.bench": ["*.cl", "*.html"],
+        "svgf_cl.compare": ["*.html", "*.css", "*.js"],
+    },
 )

@@ -40,7 +40,8 @@ class Piece:
     @property
     def row(self) -> int:
         """Through its middle."""
-        return (self.rows.start + self.rows.stop) // 2
+        row: int = (self.rows.start + self.rows.stop) // 2
+        return row
 
     def of(self, picture: Bytes) -> Bytes:
         """The part of a picture (H, W, 3)."""

@@ -8,14 +8,14 @@ import hashlib
 import io
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
 import svgf_cl
 from svgf_cl.compare.measures import MEASURES
-from svgf_cl.compare.page import Entry, Page, Scene
+from svgf_cl.compare.page import Entry, Measure, Page, Scene
 from svgf_cl.device.tuning import kernels_digest
 from svgf_cl.errors import FileError
 from svgf_cl.io.atomic import read_json, written_whole
@@ -133,9 +133,11 @@ def measured(scenes: Sequence[Scene]) -> list[Any]:
         entries = (entry for scene in scenes for entry in scene.entries)
         return any(not math.isnan(number(entry.values.get(key))) for entry in entries)
 
-    return [each for each in MEASURES if has(each.key)]
+    return [column(each) for each in MEASURES if has(each.key)]
 
 
-def about(command: str, more: Mapping[str, str]) -> dict[str, str]:
-    """What stands beside every figure."""
-    return {"command": command, "svgf_cl": svgf_cl.__version__, **more}
+def column(each: Any) -> Measure:
+    """Tmp"""
+    return Measure(
+        each.key, each.title, each.unit, each.spec, each.sign, each.ideal if each.sign == 0 else None, each.meaning
+    )

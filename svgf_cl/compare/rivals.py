@@ -16,6 +16,7 @@ from svgf_cl.device.devices import default_device
 from svgf_cl.errors import SvgfError
 from svgf_cl.filters import FILTERS, Accumulation
 from svgf_cl.filters.filter import Filter
+from svgf_cl.filters.temporal import TemporalFilter
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.display import Linear
 from svgf_cl.io.pictures import read_picture
@@ -128,7 +129,7 @@ class Rival:
 
 def antialiased(settings: Filter) -> Filter:
     """The same filter with temporal antialiasing, if it has any."""
-    return replace(settings, taa=True) if hasattr(settings, "taa") else settings
+    return replace(settings, taa=True) if isinstance(settings, TemporalFilter) else settings
 
 
 def parse_rivals(text: str, parse: Callable[[str, Sequence[str]], Filter]) -> list[Rival]:

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import html
 import json
-import os
 import re
-import shutil
 import struct
 import subprocess
 import zlib
 from pathlib import Path
 from typing import Any
 
-import pytest
-
 from svgf_cl.bench import report
 from svgf_cl.bench.report import Section, inline_png
 from svgf_cl.bench.tables import Table
+from tests.browser import chromium
 from tests.svgf_cl.bench.runs import device, result, run, whole_run
 
 POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
@@ -40,15 +37,6 @@ addEventListener("load", () => {
   document.querySelector("pre").textContent = JSON.stringify(seen);
 });
 </script>"""
-
-
-def chromium() -> str:
-    """The browser; where it is missing the test is skipped, but fails in CI, which installs it."""
-    found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    if found is None:
-        missing = "no chromium here to look at the report with (apt-get install chromium)"
-        pytest.fail(missing) if os.environ.get("CI") else pytest.skip(missing)
-    return found
 
 
 def look_at(page: Path, profile: Path) -> tuple[dict[str, Any], list[str]]:

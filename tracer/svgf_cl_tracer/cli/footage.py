@@ -12,6 +12,7 @@ from svgf_cl.compare.footage import Choice
 from svgf_cl.compare.halves import Pair
 from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Frame, Shape
+from svgf_cl.io.display import Linear
 from svgf_cl_tracer.cli.scenes import open_scene, require_tracer
 
 if TYPE_CHECKING:
@@ -100,7 +101,7 @@ class Traced:
 
         return svgf_cl_tracer.Shot(open_scene(self.scene, None), self.shape, len(self.numbers))
 
-    def _half(self, number: int, half: int, advance: Callable[[], None]) -> object:
+    def _half(self, number: int, half: int, advance: Callable[[], None]) -> Linear:
         from svgf_cl_tracer import References
 
         references = References(self._shot, seed=half, jitter=self.jitter)

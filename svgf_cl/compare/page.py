@@ -1,0 +1,332 @@
+"""The page of ``svgf-cl compare``: rival filters side by side, in one HTML file that needs nothing else."""
+
+from __future__ import annotations
+
+import base64
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+from statistics import fmean
+from typing import Any
+
+from jinja2 import Environment
+from markupsafe import Markup
+
+from svgf_cl.io.atomic import written_whole
+
+
+@dataclass(frozen=True)
+class Measure:
+    """What is measured of a picture: a column of the tables, and a set of curves.
+
+    Parameters
+    ----------
+    key : str
+        What `Entry` calls it.
+    title : str
+    unit : str
+        May be empty.
+    spec : str
+        How to write a value, such as ``.2f``.
+    sign : int
+        1 where more is better, -1 where less is, 0 where neither is.
+    ideal : float or None
+        The value to be near to, where there is one. The sign does not matter then.
+    meaning : str
+        One sentence.
+    """
+
+    key: str
+    title: str
+    unit: str
+    spec: str
+    sign: int
+    ideal: float | None
+    meaning: str
+
+    @property
+    def aim(self) -> str:
+        """What makes a value good, in words; empty where nothing does."""
+        if self.ideal is not None:
+            return f"nearest to {self.ideal:g} is best"
+        return {1: "more is better", -1: "less is better"}.get(self.sign, "")
+
+    @property
+    def arrow(self) -> str:
+        """The same as one sign, for the head of a column."""
+        if self.ideal is not None:
+            return f"→ {self.ideal:g}"
+        return {1: "↑", -1: "↓"}.get(self.sign, "")
+
+    @property
+    def name(self) -> str:
+        """Title and unit."""
+        return f"{self.title}, {self.unit}" if self.unit else self.title
+
+    def merit(self, value: float) -> float:
+        """How good a value is; more is better."""
+        return self.sign * value if self.ideal is None else -abs(value - self.ideal)
+
+    def spell(self, value: float) -> str:
+        """Write a value down."""
+        return format(value, self.spec).replace("inf", "∞")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What one rival made of one scene.
+
+    Parameters
+    ----------
+    rival : str
+    values : mapping of str to float or None
+        By the measures' keys. None or NaN is "not measured".
+    curves : mapping of str to sequence of float or None
+        The same over the scene's frames.
+    milliseconds : float or None
+        Of a frame.
+    picture : bytes
+        The frame that is shown, a WebP or PNG file. So are all images here.
+    heat : bytes or None
+        Map of its error.
+    clip : bytes or None
+        Animation of the scene's crop.
+    profile : bytes or None
+        The scene's row of pixels over time, time downwards.
+    """
+
+    rival: str
+    values: Mapping[str, float | None]
+    curves: Mapping[str, Sequence[float | None]]
+    milliseconds: float | None
+    picture: bytes
+    heat: bytes | None
+    clip: bytes | None
+    profile: bytes | None
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What all rivals made of one scene.
+
+    Parameters
+    ----------
+    name : str
+    note : str
+        What to look at; may be empty.
+    frames : sequence of int
+        Numbers of the frames that were judged.
+    shown : int
+        Number of the frame in the pictures.
+    size : tuple of int
+        Height and width of the pictures.
+    crop : tuple of int or None
+        Left edge, top edge, width and height of the clips.
+    row : int or None
+        Of the profiles.
+    entries : sequence of Entry
+        Reference and noisy input are among them.
+    reference : str
+        The entry that is the reference. It is never marked as the best.
+    noisy : str or None
+        The entry that is the noisy input. Neither is it.
+    """
+
+    name: str
+    note: str
+    frames: Sequence[int]
+    shown: int
+    size: tuple[int, int]
+    crop: tuple[int, int, int, int] | None
+    row: int | None
+    entries: Sequence[Entry]
+    reference: str
+    noisy: str | None = None
+
+
+@dataclass(frozen=True)
+class Page:
+    """All that the page shows.
+
+    Parameters
+    ----------
+    title : str
+    about : mapping of str to str
+        How it was made: device, versions, command.
+    measures : sequence of Measure
+        From left to right. The first is shown below the pictures too.
+    scenes : sequence of Scene
+    """
+
+    title: str
+    about: Mapping[str, str]
+    measures: Sequence[Measure]
+    scenes: Sequence[Scene]
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A value in a table, whether it is the best of its column, and what else to say of it."""
+
+    text: str
+    best: bool = False
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Table:
+    """What was measured: a column for each measure, a row for each rival."""
+
+    measures: Sequence[Measure]
+    rows: Mapping[str, Sequence[Cell]]
+
+
+UNKNOWN = "-"
+TIME = Measure("milliseconds", "Time", "ms", ".2f", -1, None, "How long a frame takes on the device.")
+
+Tally = Mapping[str, Mapping[str, Sequence[float]]]  # by rival and key: a value for each scene where there is one
+
+
+def write(page: Page, path: Path) -> None:
+    """Write the page to a file."""
+    text = render(page)
+    with written_whole(path) as aside:
+        aside.write_text(text, encoding="utf-8")
+
+
+def render(page: Page) -> str:
+    """The page's HTML."""
+    environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    environment.filters["uri"] = data_uri
+    environment.filters["gist"] = lambda entry: gist(entry, page.measures[:1])
+    return environment.from_string(_file("page.html")).render(
+        page=page,
+        rivals=rivals(page),
+        style=Markup(_file("page.css")),
+        script=Markup(_file("page.js")),
+        data=data(page),
+        summary=table(page.scenes, page.measures),
+        tables=[table([scene], page.measures) for scene in page.scenes],
+        curves=[curves(scene, page.measures) for scene in page.scenes],
+        has_heat=any(entry.heat for scene in page.scenes for entry in scene.entries),
+    )
+
+
+def rivals(page: Page) -> list[str]:
+    """All rivals' names, in the order in which they come."""
+    return list(dict.fromkeys(entry.rival for scene in page.scenes for entry in scene.entries))
+
+
+def table(scenes: Sequence[Scene], measures: Sequence[Measure]) -> Table:
+    """Make the table of means over scenes; rivals and measures without a value are left out."""
+    found = tally(scenes)
+    columns = [measure for measure in (*measures, TIME) if any(measure.key in values for values in found.values())]
+    outside = {name for scene in scenes for name in (scene.reference, scene.noisy)}
+    cells = [column_cells(found, measure, outside) for measure in columns]
+    return Table(columns, {rival: [column.get(rival, Cell(UNKNOWN)) for column in cells] for rival in found})
+
+
+def tally(scenes: Sequence[Scene]) -> Tally:
+    """Gather what was measured."""
+    found: dict[str, dict[str, list[float]]] = {}
+    for scene in scenes:
+        for entry in scene.entries:
+            for key, value in {**entry.values, TIME.key: entry.milliseconds}.items():
+                if value is not None and not math.isnan(value):
+                    found.setdefault(entry.rival, {}).setdefault(key, []).append(value)
+    return found
+
+
+def column_cells(found: Tally, measure: Measure, outside: set[str | None]) -> dict[str, Cell]:
+    """Fill a column, by rival.
+
+    Where a rival was measured in fewer scenes than others the cell says so, and is not the best: it may have missed
+    the hard ones.
+    """
+    values = {rival: found[rival][measure.key] for rival in found if measure.key in found[rival]}
+    scenes = max(map(len, values.values()))
+    means = {rival: fmean(each) for rival, each in values.items()}
+    whole = {rival: means[rival] for rival in means if len(values[rival]) == scenes and rival not in outside}
+    top = best(whole, measure)
+    notes = {rival: "" if len(each) == scenes else f"{len(each)} of {scenes} scenes" for rival, each in values.items()}
+    return {rival: Cell(measure.spell(mean), rival in top, notes[rival]) for rival, mean in means.items()}
+
+
+def best(values: Mapping[str, float], measure: Measure) -> set[str]:
+    """Find who is best, more than one where they read the same; nobody is where there is no choice."""
+    if len(values) < 2 or not measure.aim:
+        return set()
+    top = max(values.values(), key=measure.merit)
+    return {
+        rival
+        for rival, value in values.items()
+        if measure.merit(value) == measure.merit(top) or measure.spell(value) == measure.spell(top)
+    }
+
+
+def gist(entry: Entry, measures: Sequence[Measure]) -> list[str]:
+    """What to say of an entry below its picture: some measures, and its time."""
+    said = [(measure, entry.values.get(measure.key)) for measure in measures]
+    known = [(measure, value) for measure, value in said if value is not None and not math.isnan(value)]
+    texts = [f"{measure.title} {measure.spell(value)} {measure.unit}".rstrip() for measure, value in known]
+    return texts if entry.milliseconds is None else [*texts, f"{TIME.spell(entry.milliseconds)} ms"]
+
+
+def curves(scene: Scene, measures: Sequence[Measure]) -> list[Measure]:
+    """Tell which measures have curves in a scene; there are none over one frame."""
+    if len(scene.frames) < 2:
+        return []
+    return [
+        measure
+        for measure in measures
+        if any(point is not None for entry in scene.entries for point in points(entry.curves.get(measure.key, ())))
+    ]
+
+
+def points(curve: Sequence[float | None]) -> list[float | None]:
+    """A curve with gaps for what cannot be drawn, nor be written as JSON."""
+    return [value if value is not None and math.isfinite(value) else None for value in curve]
+
+
+def data(page: Page) -> dict[str, Any]:
+    """What the page's script draws from; pictures are not in it, but in the page."""
+    names = rivals(page)
+    return {
+        "rivals": names,
+        "measures": {measure.key: {"name": measure.name, "aim": measure.aim} for measure in page.measures},
+        "speed": {measure.key: found for measure in page.measures if (found := list(speed(page, measure.key)))},
+        "scenes": [
+            {
+                "size": scene.size,
+                "frames": list(scene.frames),
+                "curves": {
+                    measure.key: {
+                        names.index(entry.rival): points(entry.curves.get(measure.key, ())) for entry in scene.entries
+                    }
+                    for measure in curves(scene, page.measures)
+                },
+            }
+            for scene in page.scenes
+        ],
+    }
+
+
+def speed(page: Page, key: str) -> Iterator[tuple[str, float, float]]:
+    """Yield rival, mean time and mean value of each rival that has both."""
+    for rival, values in tally(page.scenes).items():
+        if key in values and TIME.key in values:
+            time, value = fmean(values[TIME.key]), fmean(values[key])
+            if time > 0 and math.isfinite(time) and math.isfinite(value):
+                yield rival, time, value
+
+
+def data_uri(image: bytes) -> Markup:
+    """Write an image into an address."""
+    kind = "png" if image.startswith(b"\x89PNG") else "webp"
+    return Markup("data:image/{};base64,{}").format(kind, base64.b64encode(image).decode("ascii"))
+
+
+def _file(name: str) -> str:
+    return (resources.files("svgf_cl.compare") / name).read_text(encoding="utf-8")
