@@ -147,8 +147,8 @@ function drag(event) {
     const before = grip();
     held.set(event.pointerId, { pane, ...place(event, pane) });
     const after = grip();
+    if (held.size > 1) zoomBy(after.spread / before.spread, before); // first, or there may be no room to pan
     panBy(after.x - before.x, after.y - before.y);
-    if (held.size > 1) zoomBy(after.spread / before.spread, after);
   }
   point(pane && place(event, pane));
 }
@@ -286,7 +286,7 @@ function drawSpeed(box, key) {
 
 // Name a mark where there is room: right of it, left, above or below.
 function label(drawing, name, x, y, taken) {
-  const text = svg("text", {}, drawing, name);
+  const text = svg("text", {}, drawing, name.length > 32 ? `${name.slice(0, 31)}…` : name);
   const places = [["start", 10, 4], ["end", -10, 4], ["middle", 0, -11], ["middle", 0, 20], ["end", 6, -11], ["end", 6, 20],
     ["start", -6, -11], ["start", -6, 20]];
   const free = box => box.left >= 0 && box.right <= drawing.clientWidth
@@ -333,12 +333,8 @@ function restart(part) {
 
 for (const sign of controls.querySelectorAll(".swatch")) swatch(sign, sign.previousElementSibling.value);
 for (const each of document.querySelectorAll(".stage")) {
-  each.addEventListener("keydown", press);
-  each.addEventListener("wheel", turn, { passive: false });
-  each.addEventListener("pointerdown", hold);
-  each.addEventListener("pointermove", drag);
-  each.addEventListener("pointerup", release);
-  each.addEventListener("pointercancel", release);
+  const acts = { keydown: press, wheel: turn, pointerdown: hold, pointermove: drag, pointerup: release, pointercancel: release };
+  for (const [name, act] of Object.entries(acts)) each.addEventListener(name, act, { passive: false });
   each.addEventListener("pointerleave", () => point(null));
 }
 for (const button of document.querySelectorAll(".together")) button.addEventListener("click", () => restart(button.closest(".part")));

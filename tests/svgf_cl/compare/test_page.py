@@ -242,6 +242,21 @@ def test_wheel_and_mouse_move_all_pictures_alike(tab: Tab) -> None:
     assert tab.ask("document.querySelector('[name=pixel]').value") == "pixel 8, 9", "it comes along"
 
 
+def test_two_fingers_zoom_all_pictures_alike(tab: Tab) -> None:
+    def touch(what: str, *places: float) -> None:
+        fingers = enumerate(pane["x"] + place * pane["width"] for place in places)
+        points = [{"x": x, "y": pane["y"] + 50, "id": number} for number, x in fingers]
+        tab.call("Input.dispatchTouchEvent", type=what, touchPoints=points)
+
+    tab.ask("document.querySelector('.stage').scrollIntoView({ block: 'center' })")
+    pane = shown(tab, ".pane")[1]
+    touch("touchStart", 0.4)
+    touch("touchStart", 0.4, 0.6)
+    touch("touchMove", 0.3, 0.7)
+    touch("touchEnd")
+    assert np.allclose(np.array(views(tab))[:, :2], [[2, -0.5]] * 5, atol=1e-2)
+
+
 def test_the_divider_is_moved_by_keys(tab: Tab) -> None:
     focus(tab, "[value=slider]")
     tab.press(" ")
@@ -278,6 +293,24 @@ def test_error_maps_take_the_pictures_place(tab: Tab, page: Page) -> None:
     tab.press("e")
     assert [each["src"] for each in shown(tab, ".heat")] == [data_uri(e.heat) for e in page.scenes[0].entries if e.heat]
     assert len(shown(tab, ".picture")) == 2, "of those that have no error"
+
+
+def test_animations_start_together(tab: Tab) -> None:
+    started = """new Promise(done => {
+      const clips = [...document.querySelectorAll(".scene:not([hidden]) .clip img")];
+      let count = 0;
+      for (const clip of clips) clip.addEventListener("load", () => { if (++count === clips.length) done(count); });
+      document.querySelector(".together").click();
+    })"""
+    assert tab.ask(started) == 5
+
+
+def test_who_wants_no_motion_sees_none(chromium: Tab, page: Page, tmp_path: Path) -> None:
+    write(page, tmp_path / "page.html")
+    chromium.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-reduced-motion", "value": "reduce"}])
+    chromium.open(tmp_path / "page.html")
+    assert chromium.ask("[...document.querySelectorAll('.part')].map(part => part.open)") == [False, False]
+    chromium.call("Emulation.setEmulatedMedia", features=[])
 
 
 def test_plots_are_drawn_and_read(tab: Tab) -> None:
