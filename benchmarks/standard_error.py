@@ -1,31 +1,31 @@
 """How often a picture lies within the standard error that the filter says it has: once, and twice.
 
-The frames are those of `python -m benchmarks.quality` with rays through pixel centres. For every pixel that shows
-something, the error of the picture's luminance is divided by the square root of two variances: that of the stage
-`standard_error`, and the truth's own. The latter is a quarter of the squared difference of its two halves, averaged
-over 7x7 pixels. Were errors normally distributed, 68 % would lie within 1 and 95 % within 2.
+The frames are those of `svgf-cl compare --no-jitter`. For every pixel that shows something, the error of the picture's
+luminance is divided by the square root of two variances: that of the stage `standard_error`, and the truth's own. The
+latter is a quarter of the squared difference of its two halves, averaged over 7x7 pixels. Were errors normally
+distributed, 68 % would lie within 1 and 95 % within 2.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
 import typer
 
 from benchmarks.command import run
-from benchmarks.footage import Footage
 from benchmarks.presentation import markdown
 from benchmarks.provenance import provenance
-from benchmarks.quality import footage
 from svgf_cl import Denoiser, Kalman
 from svgf_cl.bench.tables import Table
 from svgf_cl.cli.console import progress_bar, show
+from svgf_cl.cli.options import parse_size
+from svgf_cl.compare.footage import Choice, Footage
 from svgf_cl.device import devices
 from svgf_cl.oracle.taps import Array, luminance, shifted, square
 from svgf_cl_tracer import BUILTIN
+from svgf_cl_tracer.cli.footage import open_footage
 
 COLUMNS = ("scene", "within 1 %", "within 2 %", "of 68 and 95")
 
@@ -44,8 +44,9 @@ def standard_error(
     PYOPENCL_CTX chooses the device. The truth takes minutes a scene to render, and is kept in the user's cache folder.
     """
     rows = []
-    for each in [footage(name, size, frames, spp, jitter=False) for name in scene]:
-        with progress_bar(each.scene, each.chunks + each.frames) as advance:
+    choice = Choice(parse_size(size), frames, None, spp, jitter=False)
+    for each in [open_footage(name, choice) for name in scene]:
+        with progress_bar(each.scene, each.steps + len(each.numbers)) as advance:
             ratios = in_standard_errors(each, advance)
         shares = [100 * float(np.mean(ratios < count)) for count in (1, 2)]
         off = ", ".join(f"{share - normal:+.0f}" for share, normal in zip(shares, (68, 95), strict=True))
@@ -58,11 +59,11 @@ def standard_error(
 
 def in_standard_errors(footage: Footage, advance: Callable[[], None]) -> Array:
     """The errors of all pixels of the judged frames that show something, each over its standard deviation: (N,)."""
-    halves = dict(zip(footage.judged, footage.halves(advance), strict=True))
+    halves = footage.truths(advance)
     found = []
     with Denoiser(footage.shape, settings=Kalman(standard_error=True)) as denoiser:
-        for number, frame in enumerate(footage.noisy()):
-            picture = denoiser.denoise(replace(frame, direct=None, indirect=None))
+        for number, frame in zip(footage.numbers, footage.frames(), strict=True):
+            picture = denoiser.denoise(frame)
             if number in halves:
                 first, second = (luminance(half.astype(np.float64)) for half in halves[number])
                 error = luminance(picture.astype(np.float64)) - (first + second) / 2

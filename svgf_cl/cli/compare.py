@@ -29,7 +29,6 @@ STDOUT = Path("-")  # as --json has it
 SCENE_FILES = (".gltf", ".glb", ".obj")
 SHOWN = ("psnr", "ssim", "flip", "relmse_trimmed", "temporal", "shadows", "moving_shadows", "ghost", "lag")
 BY_FRAME = ("psnr", "ssim", "flip", "relmse", "temporal")
-SETTLED = 8  # frames: histories are nearly as long then as they get
 PICTURES = "pictures"  # the rival's name where pictures were made before
 
 
@@ -39,12 +38,11 @@ class Preset:
 
     scenes: tuple[str, ...]
     size: str
-    judged: int
     spp: int
 
 
-USUAL = Preset(("cornell", "glossy", "swing", "switch", "sliding", "fence", "fireflies", "static"), "640x360", 40, 128)
-QUICK = Preset(("cornell", "swing", "switch"), "320x180", 24, 64)
+USUAL = Preset(("cornell", "glossy", "swing", "switch", "sliding", "fence", "fireflies", "static"), "640x360", 128)
+QUICK = Preset(("cornell", "swing", "switch"), "320x180", 64)
 
 
 def compare(
@@ -86,7 +84,8 @@ def compare(
         int | None, typer.Option(metavar="N", min=1, help="Frames to render [as many as show the scene].")
     ] = None,
     judged: Annotated[
-        int | None, typer.Option(metavar="N", min=1, help="How many of the last frames are judged [40].")
+        int | None,
+        typer.Option(metavar="N", min=1, help="How many of the last frames are judged [all from the ninth on]."),
     ] = None,
     spp: Annotated[int | None, typer.Option(metavar="N", min=2, help="Samples per pixel of the truth [128].")] = None,
     jitter: Annotated[
@@ -163,7 +162,6 @@ def needs_packages() -> None:
     require_ssim()
     try:
         import jinja2  # noqa: F401
-        import matplotlib  # noqa: F401
     except ModuleNotFoundError as error:
         raise SvgfError(f"compare needs more ({error}): pip install '.[metrics]' in a clone of svgf_cl") from error
     if missing := why_no_flip():
@@ -231,7 +229,7 @@ def of_scenes(
     shape = parse_size(size or preset.size)
     if min(shape) < SSIM_WINDOW:
         raise SvgfError(f"--size: expected at least {SSIM_WINDOW}x{SSIM_WINDOW} pixels, which SSIM needs, got {size}")
-    choice = Choice(shape, frames, judged or preset.judged, spp or preset.spp, jitter)
+    choice = Choice(shape, frames, judged, spp or preset.spp, jitter)
     open_footage = opener()
     return [open_footage(name, choice) for name in names]
 

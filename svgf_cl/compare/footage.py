@@ -69,8 +69,8 @@ class Choice:
         (height, width) in pixels.
     frames : int, optional
         By default as many as show the scene.
-    judged : int, >= 2
-        How many of the last frames are to have a truth; all, where there are fewer.
+    judged : int, optional
+        How many of the last frames are to have a truth; by default all but the first, whose history is short.
     spp : int, >= 2
         Samples per pixel of a truth.
     jitter : bool
@@ -79,7 +79,7 @@ class Choice:
 
     shape: Shape
     frames: int | None
-    judged: int
+    judged: int | None
     spp: int
     jitter: bool
 

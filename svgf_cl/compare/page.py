@@ -14,64 +14,8 @@ from typing import Any
 from jinja2 import Environment
 from markupsafe import Markup
 
+from svgf_cl.compare.measures import Measure
 from svgf_cl.io.atomic import written_whole
-
-
-@dataclass(frozen=True)
-class Measure:
-    """What is measured of a picture: a column of the tables, and a set of curves.
-
-    Parameters
-    ----------
-    key : str
-        What `Entry` calls it.
-    title : str
-    unit : str
-        May be empty.
-    spec : str
-        How to write a value, such as ``.2f``.
-    sign : int
-        1 where more is better, -1 where less is, 0 where neither is.
-    ideal : float or None
-        The value to be near to, where there is one. The sign does not matter then.
-    meaning : str
-        One sentence.
-    """
-
-    key: str
-    title: str
-    unit: str
-    spec: str
-    sign: int
-    ideal: float | None
-    meaning: str
-
-    @property
-    def aim(self) -> str:
-        """What makes a value good, in words; empty where nothing does."""
-        if self.ideal is not None:
-            return f"nearest to {self.ideal:g} is best"
-        return {1: "more is better", -1: "less is better"}.get(self.sign, "")
-
-    @property
-    def arrow(self) -> str:
-        """The same as one sign, for the head of a column."""
-        if self.ideal is not None:
-            return f"→ {self.ideal:g}"
-        return {1: "↑", -1: "↓"}.get(self.sign, "")
-
-    @property
-    def name(self) -> str:
-        """Title and unit."""
-        return f"{self.title}, {self.unit}" if self.unit else self.title
-
-    def merit(self, value: float) -> float:
-        """How good a value is; more is better."""
-        return self.sign * value if self.ideal is None else -abs(value - self.ideal)
-
-    def spell(self, value: float) -> str:
-        """Write a value down."""
-        return format(value, self.spec).replace("inf", "∞")
 
 
 @dataclass(frozen=True)

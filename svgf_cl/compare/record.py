@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 import svgf_cl
-from svgf_cl.compare.measures import MEASURES
-from svgf_cl.compare.page import Entry, Measure, Page, Scene
+from svgf_cl.compare.measures import MEASURES, Measure
+from svgf_cl.compare.page import Entry, Page, Scene
 from svgf_cl.device.tuning import kernels_digest
 from svgf_cl.errors import FileError
 from svgf_cl.io.atomic import read_json, written_whole
@@ -126,18 +126,11 @@ def number(value: float | str | None) -> float:
     return math.nan if value is None else float(value)
 
 
-def measured(scenes: Sequence[Scene]) -> list[Any]:
+def measured(scenes: Sequence[Scene]) -> list[Measure]:
     """The measures of which any rival of any scene has a value."""
 
     def has(key: str) -> bool:
         entries = (entry for scene in scenes for entry in scene.entries)
         return any(not math.isnan(number(entry.values.get(key))) for entry in entries)
 
-    return [column(each) for each in MEASURES if has(each.key)]
-
-
-def column(each: Any) -> Measure:
-    """Tmp"""
-    return Measure(
-        each.key, each.title, each.unit, each.spec, each.sign, each.ideal if each.sign == 0 else None, each.meaning
-    )
+    return [each for each in MEASURES if has(each.key)]

@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from svgf_cl.compare.page import Cell, Entry, Measure, Page, Scene, best, data, data_uri, render, table, write
+from svgf_cl.compare.measures import Measure
+from svgf_cl.compare.page import Cell, Entry, Page, Scene, best, data, data_uri, render, table, write
 from tests.browser import Tab, browser
 
 NASTY = "</script><b>&\"'\u2028"

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from svgf_cl_tracer import Shot
 
 FRAMES = 24  # of a scene that does not say how many show it
+SETTLED = 8  # frames: histories are nearly as long then as they get
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,8 @@ class Traced:
     @property
     def judged(self) -> Sequence[int]:
         """The last ones."""
-        return self.numbers[-self.choice.judged :]
+        count = self.choice.judged or max(2, len(self.numbers) - SETTLED)
+        return self.numbers[-count:]
 
     @property
     def steps(self) -> int:
