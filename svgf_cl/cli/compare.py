@@ -89,7 +89,7 @@ def compare(
     ] = None,
     spp: Annotated[int | None, typer.Option(metavar="N", min=2, help="Samples per pixel of the truth [128].")] = None,
     jitter: Annotated[
-        bool, typer.Option(help="Move the rays within the pixel, and antialias over time; or do neither.")
+        bool, typer.Option(help="Rays move within the pixel, and filters antialias over time; or neither.")
     ] = True,
     exposure: Exposure = 0.0,
     fail_below: Annotated[
@@ -137,7 +137,7 @@ def compare(
     if job is None:
         rivals = chosen_rivals(filters)
         if reference is not None:
-            footages = [of_frames(inputs, reference)]
+            footages = [of_frames(inputs, reference, jitter=jitter)]
         else:
             footages = of_scenes(inputs or preset.scenes, preset, (size, frames, judged, spp), jitter=jitter)
         output = output or Path("out/compare")
@@ -195,10 +195,10 @@ def of_pictures(inputs: Sequence[str]) -> Footage:
             "frames to be filtered want --reference"
         )
     pictures, references = paired(Path(inputs[0]), Path(inputs[1]))
-    return Pictures({number: pictures[number] for number in references}, references)
+    return Pictures({number: pictures[number] for number in references}, references, jitter=True)
 
 
-def of_frames(inputs: Sequence[str], reference: Path) -> Footage:
+def of_frames(inputs: Sequence[str], reference: Path, *, jitter: bool) -> Footage:
     """A user's frames with references."""
     from svgf_cl.compare.recorded import Recorded, by_number
 
@@ -211,7 +211,7 @@ def of_frames(inputs: Sequence[str], reference: Path) -> Footage:
     for number, path in references.items():
         if number not in paths:
             raise SvgfError(f"{path}: expected a frame number {number} among the frames, found none")
-    return Recorded(paths, references)
+    return Recorded(paths, references, jitter)
 
 
 def of_scenes(

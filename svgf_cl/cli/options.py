@@ -68,8 +68,14 @@ def parse_size(text: str) -> tuple[int, int]:
     return height, width
 
 
-def parse_settings(filter_: str, texts: Iterable[str]) -> Filter:
-    """Read ``"svgf", ["iterations=4", "taa=on"]`` as a `Filter`; `SettingsError` for a wrong name or value."""
+def parse_settings(filter_: str, texts: Iterable[str], option: str = "--set") -> Filter:
+    """Read ``"svgf", ["iterations=4", "taa=on"]`` as a `Filter`.
+
+    Raises
+    ------
+    SettingsError
+        For a wrong name or value, given by `option`.
+    """
     if filter_ not in FILTERS:
         raise SettingsError(f"--filter: expected {' or '.join(FILTERS)}, got {shown(filter_)}")
     kind = FILTERS[filter_]
@@ -79,13 +85,13 @@ def parse_settings(filter_: str, texts: Iterable[str]) -> Filter:
         name, _, value = text.partition("=")
         if name not in known or not value:
             raise SettingsError(
-                f"--set: expected NAME=VALUE with a name out of {', '.join(known)} (filter {filter_}), got {text!r}"
+                f"{option}: expected NAME=VALUE with a name out of {', '.join(known)} (filter {filter_}), got {text!r}"
                 + hint(name, known)
             )
         try:
             values[name] = known[name].parse(value)
         except (KeyError, ValueError) as error:
-            raise SettingsError(f"--set {name}: expected {describe(known[name])}, got {value!r}") from error
+            raise SettingsError(f"{option} {name}: expected {describe(known[name])}, got {value!r}") from error
     return kind(**values)
 
 

@@ -31,12 +31,19 @@ class Recorded:
         The frames' files by number.
     references : mapping of int to Path
         Those of the references; each has its frame.
+    jitter : bool
+        Whether the renderer moved its rays within the pixel: filters then antialias over time.
     """
 
     paths: Mapping[int, Path]
     references: Mapping[int, Path]
-    jitter: bool = True
-    note: str = "one reference a frame: its own noise counts as error"
+    jitter: bool
+
+    @property
+    def note(self) -> str:
+        """What there is to know of the figures."""
+        rays = "antialiased over time" if self.jitter else "not antialiased"
+        return f"{rays}; one reference a frame, whose own noise counts as error"
 
     @property
     def name(self) -> str:

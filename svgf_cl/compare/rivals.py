@@ -25,6 +25,9 @@ OIDN, OIDN_ACCUMULATED = "oidn", "oidn+accumulation"
 OTHERS = (OIDN, OIDN_ACCUMULATED)  # beside the filters
 
 
+Parser = Callable[[str, Sequence[str], str], Filter]  # of a name, settings as texts, and the option they came by
+
+
 class Maker(Protocol):
     """Makes pictures of consecutive frames; `milliseconds` is what its filter took for the last, without transfers."""
 
@@ -132,14 +135,13 @@ def antialiased(settings: Filter) -> Filter:
     return replace(settings, taa=True) if isinstance(settings, TemporalFilter) else settings
 
 
-def parse_rivals(text: str, parse: Callable[[str, Sequence[str]], Filter]) -> list[Rival]:
+def parse_rivals(text: str, parse: Parser) -> list[Rival]:
     """Read ``svgf,taps=5x5,eaw,oidn``: names, each followed by the settings that it is to have.
 
     Parameters
     ----------
     text : str
-    parse : callable
-        Makes a filter of a name and texts such as ``taps=5x5``.
+    parse : Parser
 
     Raises
     ------
@@ -158,7 +160,7 @@ def parse_rivals(text: str, parse: Callable[[str, Sequence[str]], Filter]) -> li
     return [rival(name, parts, parse) for name, parts in zip(names, split, strict=True)]
 
 
-def rival(name: str, parts: Sequence[str], parse: Callable[[str, Sequence[str]], Filter]) -> Rival:
+def rival(name: str, parts: Sequence[str], parse: Parser) -> Rival:
     """One rival from its name and settings."""
     kind, *settings = parts
     if kind in OTHERS:
@@ -168,7 +170,7 @@ def rival(name: str, parts: Sequence[str], parse: Callable[[str, Sequence[str]],
         return Rival(name, None)
     if kind not in FILTERS:
         raise SvgfError(f"--filters: expected names out of {', '.join((*FILTERS, *OTHERS))}, got {kind!r}")
-    return Rival(name, parse(kind, settings))
+    return Rival(name, parse(kind, settings, "--filters"))
 
 
 def usual_rivals() -> str:
