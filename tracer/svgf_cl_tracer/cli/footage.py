@@ -84,13 +84,13 @@ class Traced:
     @property
     def identity(self) -> str:
         """The shot's, and how much of its truth there is."""
-        return f"{self._shot.identity} {list(self.judged)} {self.choice.spp} {self.jitter}"
+        return f"{self.shot.identity} {list(self.judged)} {self.choice.spp} {self.jitter}"
 
     def frames(self) -> Iterator[Frame]:
         """Render frame by frame."""
         from svgf_cl_tracer import render_sequence
 
-        for frame in render_sequence(self._shot, jitter=self.jitter):
+        for frame in render_sequence(self.shot, jitter=self.jitter):
             yield replace(frame, direct=None, indirect=None)
 
     def truths(self, advance: Callable[[], None]) -> Mapping[int, Pair]:
@@ -98,7 +98,8 @@ class Traced:
         return {number: (self._half(number, 0, advance), self._half(number, 1, advance)) for number in self.judged}
 
     @cached_property
-    def _shot(self) -> Shot:
+    def shot(self) -> Shot:
+        """What is rendered."""
         import svgf_cl_tracer
 
         return svgf_cl_tracer.Shot(open_scene(self.scene, None), self.shape, len(self.numbers))
@@ -106,7 +107,7 @@ class Traced:
     def _half(self, number: int, half: int, advance: Callable[[], None]) -> Linear:
         from svgf_cl_tracer import References
 
-        references = References(self._shot, seed=half, jitter=self.jitter)
+        references = References(self.shot, seed=half, jitter=self.jitter)
         return references.picture(references.render(number, self.choice.spp // 2, advance))
 
 
