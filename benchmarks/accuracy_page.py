@@ -20,7 +20,7 @@ import numpy as np
 
 from benchmarks import steady_light
 from benchmarks.implementations import Environment, environments
-from svgf_cl import Frame, Kalman, Settings
+from svgf_cl import Frame, Kalman, Lbf, Sbf, Settings
 from svgf_cl.bench import error_to_oracle
 from svgf_cl.device import devices
 from svgf_cl.io.atomic import written_whole
@@ -31,6 +31,9 @@ from svgf_cl_tracer import Shot, builtin_scene, render_sequence
 SHAPE = (36, 64)
 FRAMES = 4
 ALL_KERNELS = (Settings(taa=True), Kalman(taa=True, standard_error=True))
+# Of up to 1089 taps a pixel, which on a simulator take a second each.
+WINDOWS = (Sbf(), Lbf())
+SMALL, FEW = (18, 32), 2
 WHOLE = (Kalman(), Settings())
 PIPELINE_FRAMES = 3
 COLUMNS = ("absolute", "relative", "ulps", "decided_otherwise")
@@ -41,10 +44,11 @@ INTRODUCTION = f"""# Accuracy
 Made by `make docs` (`python -m benchmarks.accuracy_page docs/accuracy.md`); do not edit. `make test-all` prints it for
 the machine it runs on.
 
-Every kernel of SVGF and of Kalman is given its actual float32 input and held against the same function of
+Every kernel of SVGF, Kalman, SBF and LBF is given its actual float32 input and held against the same function of
 `svgf_cl/oracle/` in float64, on {FRAMES} frames of {SHAPE[1]}x{SHAPE[0]} each of two sequences: the built-in Cornell
 box (1 sample, moving camera), and unrelated numbers in every field, with misses, ids and motion of several pixels.
-Direct and indirect light apart, TAA on. The largest error of any pixel of any result of a kernel:
+Direct and indirect light apart, TAA on. Those of SBF and LBF alone see {FEW} frames of {SMALL[1]}x{SMALL[0]} of such
+numbers, without TAA. The largest error of any pixel of any result of a kernel:
 
 - absolute: in the result's own unit (radiance, its square for a variance, or 1);
 - relative: `|got - expected| / (|expected| + {SCALE_SHARE:g} * mean |expected|)`; of a colour the greatest channel
@@ -89,7 +93,9 @@ def measured() -> dict[str, Any]:
     queue = devices.default_queue()
     traced = render_sequence(Shot(builtin_scene("cornell"), SHAPE, FRAMES))
     kernels: dict[str, list[Deviation]] = {}
-    for frames, settings in itertools.product((list(traced), list(random_frames(SHAPE, FRAMES))), ALL_KERNELS):
+    sequences = list(traced), list(random_frames(SHAPE, FRAMES))
+    small = (list(random_frames(SMALL, FEW)),)
+    for frames, settings in (*itertools.product(sequences, ALL_KERNELS), *itertools.product(small, WINDOWS)):
         for deviation in deviations(frames, settings, queue).values():
             kernels.setdefault(deviation.kernel, []).append(deviation)
     return {

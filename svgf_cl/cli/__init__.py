@@ -84,7 +84,7 @@ def application() -> typer.Typer:
 def common(
     version: Annotated[bool, typer.Option("--version", help="Show the version and exit.", is_eager=True)] = False,
 ) -> None:
-    """A denoiser for path-traced animation (Kalman, SVGF, EAW) on any OpenCL device."""
+    """A denoiser for path-traced animation (Kalman, SVGF, EAW, SBF, LBF) on any OpenCL device."""
     if version:
         print(f"svgf-cl {__version__}")
         raise typer.Exit
