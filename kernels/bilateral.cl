@@ -112,10 +112,10 @@ KERNEL bilateral(const int4 size, const float gamma_depth, const float gamma_nor
         own[s] = sums[0][s].color[LIGHT_LUMINANCE];
     }
     for (int dy = -WINDOW; dy <= WINDOW; ++dy) {
-        const int rows = abs(dy);
+        const int rows = max(dy, -dy);
         for (int dx = -WINDOW; dx <= WINDOW; ++dx) {
             if (dx == 0 && dy == 0) continue;
-            const int columns = abs(dx), tap = here + dy * size.z + dx;
+            const int columns = max(dx, -dx), tap = here + dy * size.z + dx;
             const Distance d = distance_to(features, size, tap, guide);
             const floatv w = tap_weight(d, ONE - by_depth * d.depth - by_normal * d.normal);
             UNROLLED_FOR(s, SIGNALS) {

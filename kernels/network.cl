@@ -19,8 +19,7 @@ enum { LIGHT = 0, DEPTH = 1, NORMAL = 2, ALBEDO = 3, FEATURES = 4 };
 #define CHANNELS_OF(feature) ((feature) == NORMAL ? 3 : 1)
 
 // Where a statistic counts 1/2: of light, depth, normal, albedo; and of noise.
-#define HALFWAY_OF(feature) \
-    ((feature) == LIGHT ? 0.3f : (feature) == DEPTH ? 0.01f : (feature) == NORMAL ? 0.1f : 0.5f)
+#define HALFWAY_OF(feature) ((feature) == LIGHT ? 0.3f : (feature) == DEPTH ? 0.01f : (feature) == NORMAL ? 0.1f : 0.5f)
 #define HALFWAY_NOISE 1.0f
 #define LEAST_POWER (-24.0f)  // of two, that a parameter may be
 #define GREATEST_POWER 10.0f
@@ -95,7 +94,7 @@ INLINE floatv squared_difference(Planes planes, int feature, int behind, int ahe
         const floatv slope = 0.5f * (feature_at(planes, feature, k, ahead) - feature_at(planes, feature, k, behind));
         squares += slope * slope;
     }
-    const intv seen = (depth_at(planes, behind) > 0.0f) & (depth_at(planes, ahead) > 0.0f);
+    const intv seen = min(depth_at(planes, behind), depth_at(planes, ahead)) > 0.0f;
     return where(seen, squares, (floatv)(0.0f));
 }
 
@@ -119,13 +118,13 @@ INLINE void see_feature(Layer *layer, int feature, Planes planes, int here, floa
             floatv difference[3];
             UNROLLED_FOR(k, channels) difference[k] = seen * (feature_at(planes, feature, k, tap) - own[k]);
             add_differences(&wide, difference, seen, channels);
-            if (max(abs(dx), abs(dy)) <= NEAR) add_differences(&near, difference, seen, channels);
+            if (max(max(dx, -dx), max(dy, -dy)) <= NEAR) add_differences(&near, difference, seen, channels);
         }
     }
     see_sums(layer, input, near, feature, scale);
     see_sums(layer, input + 3, wide, feature, scale);
     const floatv gradient = squared_difference(planes, feature, here - 1, here + 1) +
-                         squared_difference(planes, feature, here - planes.size.z, here + planes.size.z);
+                            squared_difference(planes, feature, here - planes.size.z, here + planes.size.z);
     see(layer, input + STATISTICS - 1, squashed(sqrt(gradient) * scale, HALFWAY_OF(feature)));
 }
 

@@ -8,7 +8,7 @@ import itertools
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ from svgf_cl.device import programs
 from svgf_cl.filters import FILTERS
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.signals import SPLITS, Inputs
+from svgf_cl.settings import domains
 
 WIDTHS = (1, 4, 8, 16)
 # These and the width say how something is done, not what there is: one value against another, and all at once, will do.
@@ -50,8 +51,10 @@ def inputs() -> Iterator[Inputs]:
 def jobs() -> list[Job]:
     """Every source of every filter with the macros of all that frames may supply, at one width each by turns."""
     found: dict[Job, None] = {}
-    kinds: list[Callable[..., Filter]] = list(FILTERS.values())
-    filters = [kind(taa=taa, **chosen) for kind in kinds for taa in (False, True) for chosen in SETTINGS]
+    either = (False, True)
+    filters = [
+        variant(kind, {"taa": taa, **chosen}) for kind in FILTERS.values() for taa in either for chosen in SETTINGS
+    ]
     for (row, chosen), (column, supplied) in itertools.product(enumerate(filters), enumerate(inputs())):
         width = WIDTHS[(row + column) % len(WIDTHS)]  # every width meets every setting, and every input
         pipeline = chosen.pipeline(supplied)
@@ -59,6 +62,11 @@ def jobs() -> list[Job]:
             options = programs.options_of(source, {"VW": width, **pipeline.defines})
             found[source, tuple(option for option in options if option.startswith("-D"))] = None
     return list(found)
+
+
+def variant(kind: type[Filter], wanted: dict[str, Any]) -> Filter:
+    """A filter with those of the settings that it has."""
+    return kind(**{name: value for name, value in wanted.items() if name in domains(kind)})
 
 
 def check(job: Job) -> str:
