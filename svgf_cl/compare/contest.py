@@ -95,8 +95,10 @@ def compete(footage: Footage, makers: Mapping[str, Maker], exposure: float, adva
     Scene
         Its entries are in the order of `makers`, with the reference behind them.
     """
-    truths = footage.truths(advance)
     judged = list(footage.judged)
+    if not judged:
+        raise ValueError(f"{footage.name}: expected a truth of at least one frame")
+    truths = footage.truths(advance)
     shown = judged[len(judged) // 2]
     switches = switches_in([truths[number] for number in judged])
     contestants = {name: Contestant(maker, Judge(switches)) for name, maker in makers.items()}
@@ -119,7 +121,7 @@ def compete(footage: Footage, makers: Mapping[str, Maker], exposure: float, adva
             before = number, frame
         advance()
     if reference is None or reference.shown is None:
-        raise ValueError(f"{footage.name}: expected a truth of at least one frame")
+        raise ValueError(f"{footage.name}: expected a frame for each truth")
     wanted = reference.shown
     entries = [entry(name, each, wanted) for name, each in contestants.items()]
     return Scene(

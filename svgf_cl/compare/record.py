@@ -108,7 +108,7 @@ def write_part(path: Path, scene: Scene) -> None:
     """Keep a scene that is done."""
     record = asdict(scene)
     for entry in record["entries"]:
-        entry |= {name: entry[name] and base64.b64encode(entry[name]).decode("ascii") for name in IMAGES}
+        entry |= {name: base64.b64encode(entry[name]).decode("ascii") for name in IMAGES if entry[name] is not None}
         entry["values"] = {key: plain(value) for key, value in entry["values"].items()}
         entry["curves"] = {key: [plain(value) for value in values] for key, values in entry["curves"].items()}
     write_text(path, json.dumps(record))
@@ -131,7 +131,7 @@ def read_part(path: Path) -> Scene | None:
 
 def read_entry(record: dict[str, Any]) -> Entry:
     """One rival of a kept scene."""
-    images = {name: record[name] and base64.b64decode(record[name]) for name in IMAGES}
+    images = {name: base64.b64decode(record[name], validate=True) for name in IMAGES if record[name] is not None}
     values = {key: number(value) for key, value in record["values"].items()}
     curves = {key: [number(value) for value in each] for key, each in record["curves"].items()}
     return Entry(**record | images | {"values": values, "curves": curves})
