@@ -17,7 +17,7 @@ from svgf_cl.io.atomic import require
 from svgf_cl.io.display import Linear
 from svgf_cl.io.exr import read_windows
 from svgf_cl.io.pictures import read_picture
-from svgf_cl.io.sequence import find_frames, find_numbered, frame_number
+from svgf_cl.io.sequence import after_gaps, find_frames, find_numbered, frame_number
 from svgf_cl.io.shot import read_shot, shared_window
 
 NO_NUMBER = 0  # of the frame of a file that has none in its name
@@ -125,9 +125,12 @@ def open_frames(frames: Sequence[Path], reference: Path, *, jitter: bool) -> Rec
     Raises
     ------
     FileError
-        Where they are no sequence, or a reference has no frame.
+        Where they are no sequence without gaps, or a reference has no frame.
     """
-    paths = {number_of(path): path for path in find_frames(frames)}
+    files = find_frames(frames, allow_gaps=True)
+    for path in sorted(after_gaps(files)):
+        raise FileError(f"{path}: expected the frame before it, from which filters go on, found none")
+    paths = {number_of(path): path for path in files}
     require(reference)
     if reference.is_dir():
         references = by_number(reference, "reference")

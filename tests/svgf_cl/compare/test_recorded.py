@@ -112,6 +112,12 @@ def test_a_reference_without_its_frame_is_refused(shot: Path) -> None:
             open_frames([shot], reference, jitter=False)
 
 
+def test_a_shot_that_lacks_a_frame_is_refused(shot: Path) -> None:
+    (shot / "frame.0008.exr").unlink()
+    with pytest.raises(FileError, match=r"frame\.0009\.exr: expected the frame before it"):
+        open_frames([shot], shot, jitter=False)
+
+
 def test_the_inputs_have_a_name_that_changes_with_them(shot: Path) -> None:
     def identity(jitter: bool = True) -> str:
         return open_frames([shot], shot, jitter=jitter).identity
