@@ -21,7 +21,7 @@ from svgf_cl.io.atomic import output_file, output_folder, require
 if TYPE_CHECKING:
     from svgf_cl.compare.footage import Footage
     from svgf_cl.compare.limits import Limits
-    from svgf_cl.compare.page import Page, Scene
+    from svgf_cl.compare.page import Entry, Page, Scene
     from svgf_cl.compare.rivals import Rival
 
 STDOUT = Path("-")  # as --json has it
@@ -288,6 +288,10 @@ def report(page: Page, *, by_frame: bool, to_stdout: bool) -> None:
     from svgf_cl.compare.record import results
     from svgf_cl.compare.tables import frame_table, scene_table
 
+    for scene in page.scenes:
+        broken = [each.rival for each in scene.entries if each.values and not is_measured(each)]
+        if broken:
+            typer.echo(f"{scene.name}: hardly measured, as pixels are NaN: {', '.join(broken)}", err=True)
     if to_stdout:
         print(results(page), end="")
         return
@@ -296,6 +300,12 @@ def report(page: Page, *, by_frame: bool, to_stdout: bool) -> None:
             show(scene.name, *frame_table(page, scene))
         else:
             show(f"{scene.name}: {scene.note}", *scene_table(page, scene))
+
+
+def is_measured(entry: Entry) -> bool:
+    """Whether an error was measured; it is NaN where pixels are."""
+    psnr = entry.values.get("psnr")
+    return psnr is not None and psnr == psnr
 
 
 def write_files(page: Page, folder: Path | None, json: Path | None) -> None:

@@ -69,8 +69,9 @@ class FrameByFrame:
         self._filter = OidnFilter(shape, "high", threads_beside(default_device()))
 
     def denoise(self, frame: Frame) -> Linear:
-        """Run Open Image Denoise."""
-        self._filter.load(frame)
+        """Run Open Image Denoise; an infinite pixel, which would spoil the whole picture, comes in black."""
+        color = np.asarray(frame.color)
+        self._filter.load(replace(frame, color=np.where(np.isfinite(color), color, 0.0)))
         begin = time.perf_counter()
         self._filter.execute()
         self.milliseconds = 1e3 * (time.perf_counter() - begin)

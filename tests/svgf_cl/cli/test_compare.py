@@ -73,7 +73,10 @@ def test_nan_misses_every_limit(frames: Path, capsys: pytest.CaptureFixture[str]
     write_picture(frames / "nan.exr", picture)
     for option in ("--fail-below=psnr=-inf", "--fail-above=relmse=inf", "--fail-above=flip=1"):
         assert run("compare", frames / "nan.exr", frames / FIRST, option) == 1
-        assert "was not measured" in capsys.readouterr().err
+        said = capsys.readouterr().err.splitlines()
+        assert said[0] == "nan: hardly measured, as pixels are NaN: pictures"
+        assert "was not measured" in said[1]
+        assert len(said) == 2
 
 
 def test_exposure_is_for_what_is_measured_as_shown(rendered: Path, capsys: pytest.CaptureFixture[str]) -> None:

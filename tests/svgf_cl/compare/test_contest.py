@@ -193,3 +193,10 @@ def test_nan_in_a_picture_is_no_figure_and_black() -> None:
 def test_without_any_truth_there_is_no_contest() -> None:
     with pytest.raises(ValueError, match="room"):
         let(Room(()), dark=Fixed(0.0))
+
+
+@pytest.mark.filterwarnings("error")
+def test_infinite_pixels_are_white_and_no_alarm() -> None:
+    found = entries(let(Room((4,)), dark=Fixed(0.0, mark=math.inf), white=Fixed(0.0, mark=1.0)))
+    assert found["dark"].values["psnr"] == found["white"].values["psnr"]
+    assert found["dark"].values["relmse"] == math.inf

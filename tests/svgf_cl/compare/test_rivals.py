@@ -134,6 +134,16 @@ def test_accumulated_pictures_are_those_of_open_image_denoise(signals: int, monk
     assert maker.milliseconds > Doubling.milliseconds, "its own, and that of accumulation"
 
 
+def test_an_infinite_pixel_spoils_no_other() -> None:
+    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
+    (frame,) = room_frames(SHAPE, 1)
+    color = frame.color.copy()
+    color[5, 6] = np.inf
+    picture = Rival(OIDN, None).maker(SHAPE, jitter=False).denoise(replace(frame, color=color))
+    light = 0.5 * frame.albedo
+    assert np.abs(picture - light).mean() < 0.3 * np.abs(frame.color - light).mean()
+
+
 @pytest.mark.parametrize("name", [OIDN, OIDN_ACCUMULATED])
 def test_open_image_denoise_takes_part_where_it_is_installed(name: str) -> None:
     pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
