@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
@@ -17,18 +17,15 @@ from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import Exposure, parse_settings, parse_size
 from svgf_cl.errors import SvgfError
 from svgf_cl.io.atomic import output_file, output_folder, require
-from svgf_cl.io.sequence import find_frames, frame_number
 
 if TYPE_CHECKING:
     from svgf_cl.compare.footage import Footage
     from svgf_cl.compare.limits import Limits
-    from svgf_cl.compare.page import Page, Scene
+    from svgf_cl.compare.page import Entry, Page, Scene
     from svgf_cl.compare.rivals import Rival
 
 STDOUT = Path("-")  # as --json has it
 SCENE_FILES = (".gltf", ".glb", ".obj")
-SHOWN = ("psnr", "ssim", "flip", "relmse_trimmed", "temporal", "shadows", "moving_shadows", "ghost", "lag")
-BY_FRAME = ("psnr", "ssim", "flip", "relmse", "temporal")
 PICTURES = "pictures"  # the rival's name where pictures were made before
 
 
@@ -55,14 +52,14 @@ def compare(
         ),
     ] = [],  # noqa: B006  # never changed; typer wants the default spelled here
     filters: Annotated[
-        str,
+        str | None,
         typer.Option(
             metavar="NAME,...",
             help="What to compare, such as svgf,taps=5x5,eaw,oidn: filters, each followed by its settings; oidn is "
             "Open Image Denoise frame by frame, oidn+accumulation the same accumulated over time. The first is the one "
             "that --fail-below tests. By default all that is installed.",
         ),
-    ] = "",
+    ] = None,
     reference: Annotated[
         Path | None, typer.Option(metavar="REF", help="References of the frames: a picture, or a folder of them.")
     ] = None,
@@ -132,27 +129,25 @@ def compare(
     for file in (json, junit):
         if file and file != STDOUT:
             output_file(file)
-    preset = QUICK if quick else USUAL
-    job = of_pictures(inputs) if reference is None and are_pictures(inputs) else None
-    if job is None:
+    is_made = reference is None and are_pictures(inputs)
+    if is_made or reference is not None:
+        refuse_rendering({"--quick": quick, "--size": size, "--frames": frames, "--judged": judged, "--spp": spp})
+    if is_made:
+        footages, rivals = [of_pictures(inputs, filters)], []
+    else:
         rivals = chosen_rivals(filters)
+        output = output or Path("out/compare")
         if reference is not None:
             footages = [of_frames(inputs, reference, jitter=jitter)]
         else:
+            preset = QUICK if quick else USUAL
             footages = of_scenes(inputs or preset.scenes, preset, (size, frames, judged, spp), jitter=jitter)
-        output = output or Path("out/compare")
-    else:
-        if filters:
-            raise SvgfError(
-                "--filters: expected scenes, or frames with --reference, got pictures that are made already"
-            )
-        footages, rivals = [job], []
     folder = output_folder(output) if output else None
     scenes = [judge(footage, rivals, exposure, folder) for footage in footages]
     page = page_of(scenes, exposure)
-    report(page, by_frame=job is not None, to_stdout=json == STDOUT)
+    report(page, by_frame=is_made, to_stdout=json == STDOUT)
     write_files(page, folder, json)
-    finish(limits, scenes, junit, each_frame=job is not None)
+    finish(limits, scenes, junit, each_frame=is_made)
 
 
 def needs_packages() -> None:
@@ -178,40 +173,44 @@ def are_pictures(inputs: Sequence[str]) -> bool:
         return is_described or is_name or path.suffix.lower() in SCENE_FILES
 
     pictures = [text for text in inputs if not is_scene(text)]
-    if pictures and len(pictures) < len(inputs):
-        raise SvgfError(f"expected scenes or pictures, got both: {' '.join(inputs)}")
     for text in pictures:
         require(Path(text))
+    if pictures and len(pictures) < len(inputs):
+        scene = next(text for text in inputs if text not in pictures)
+        raise SvgfError(f"expected scenes or pictures, got both: {scene} is a scene, {pictures[0]} is none")
     return bool(pictures)
 
 
-def of_pictures(inputs: Sequence[str]) -> Footage:
+def refuse_rendering(options: Mapping[str, object]) -> None:
+    """Raise `SvgfError` where an option of rendering was given though nothing is rendered."""
+    for name, value in options.items():
+        if value:
+            raise SvgfError(
+                f"{name}: expected scenes to render beside it, got pictures or frames that are made already"
+            )
+
+
+def of_pictures(inputs: Sequence[str], filters: str | None) -> Footage:
     """Two pictures, or two folders of them."""
-    from svgf_cl.compare.recorded import Pictures, paired
+    from svgf_cl.compare.recorded import open_pictures
 
     if len(inputs) != 2:
         raise SvgfError(
             f"expected two pictures or folders, the second being the reference of the first, got {len(inputs)}; "
             "frames to be filtered want --reference"
         )
-    pictures, references = paired(Path(inputs[0]), Path(inputs[1]))
-    return Pictures({number: pictures[number] for number in references}, references, jitter=True)
+    if filters is not None:
+        raise SvgfError("--filters: expected scenes, or frames with --reference, got pictures that are made already")
+    return open_pictures(Path(inputs[0]), Path(inputs[1]))
 
 
 def of_frames(inputs: Sequence[str], reference: Path, *, jitter: bool) -> Footage:
     """A user's frames with references."""
-    from svgf_cl.compare.recorded import Recorded, by_number
+    from svgf_cl.compare.recorded import open_frames
 
     if not inputs:
         raise SvgfError("--reference: expected frames beside it, got none")
-    paths = {frame_number(path) or 0: path for path in find_frames([Path(text) for text in inputs])}
-    references = by_number(reference, "reference")
-    if len(references) == 1 and len(paths) == 1:
-        references = dict(zip(paths, references.values(), strict=True))
-    for number, path in references.items():
-        if number not in paths:
-            raise SvgfError(f"{path}: expected a frame number {number} among the frames, found none")
-    return Recorded(paths, references, jitter)
+    return open_frames([Path(text) for text in inputs], reference, jitter=jitter)
 
 
 def of_scenes(
@@ -234,11 +233,11 @@ def of_scenes(
     return [open_footage(name, choice) for name in names]
 
 
-def chosen_rivals(text: str) -> list[Rival]:
+def chosen_rivals(text: str | None) -> list[Rival]:
     """What --filters says, or all that is installed."""
     from svgf_cl.compare.rivals import parse_rivals, usual_rivals
 
-    return parse_rivals(text or usual_rivals(), parse_settings)
+    return parse_rivals(usual_rivals() if text is None else text, parse_settings)
 
 
 def judge(footage: Footage, rivals: Sequence[Rival], exposure: float, folder: Path | None) -> Scene:
@@ -246,9 +245,12 @@ def judge(footage: Footage, rivals: Sequence[Rival], exposure: float, folder: Pa
     from svgf_cl.compare.contest import NOISY, compete
     from svgf_cl.compare.record import part_name, read_part, write_part
     from svgf_cl.compare.rivals import Noisy, makers
+    from svgf_cl.device.devices import default_device
 
-    names = [each.name for each in rivals]
-    part = folder / "parts" / f"{part_name(footage.identity, names, exposure)}.json" if folder and rivals else None
+    part = None
+    if folder and rivals:
+        names = [each.name for each in rivals]
+        part = folder / "parts" / f"{part_name(footage.identity, names, exposure, default_device().name)}.json"
     if part and (kept := read_part(part)):
         return kept
     with progress_bar(footage.name, footage.steps + len(footage.numbers)) as advance:
@@ -284,7 +286,12 @@ def page_of(scenes: Sequence[Scene], exposure: float) -> Page:
 def report(page: Page, *, by_frame: bool, to_stdout: bool) -> None:
     """Print tables: of each scene or, of pictures, of each frame."""
     from svgf_cl.compare.record import results
+    from svgf_cl.compare.tables import frame_table, scene_table
 
+    for scene in page.scenes:
+        broken = [each.rival for each in scene.entries if each.values and not is_measured(each)]
+        if broken:
+            typer.echo(f"{scene.name}: hardly measured, as pixels are NaN: {', '.join(broken)}", err=True)
     if to_stdout:
         print(results(page), end="")
         return
@@ -295,38 +302,16 @@ def report(page: Page, *, by_frame: bool, to_stdout: bool) -> None:
             show(f"{scene.name}: {scene.note}", *scene_table(page, scene))
 
 
-def scene_table(page: Page, scene: Scene) -> tuple[list[str], list[list[str]]]:
-    """A row for each filter."""
-    columns = [each for each in page.measures if each.key in SHOWN]
-    rows = []
-    for entry in scene.entries:
-        if entry.values:
-            time = "" if entry.milliseconds is None else f"{entry.milliseconds:.1f}"
-            rows.append([entry.rival, *(spelled(each.spec, entry.values.get(each.key)) for each in columns), time])
-    return ["filter", *(each.title for each in columns), "ms"], rows
-
-
-def frame_table(page: Page, scene: Scene) -> tuple[list[str], list[list[str]]]:
-    """A row for each frame, and their mean."""
-    (entry,) = [each for each in scene.entries if each.values]
-    columns = [each for each in page.measures if each.key in BY_FRAME]
-    rows = [
-        [str(number), *(spelled(each.spec, entry.curves[each.key][index]) for each in columns)]
-        for index, number in enumerate(scene.frames)
-    ]
-    rows.append(["all", *(spelled(each.spec, entry.values.get(each.key)) for each in columns)])
-    return ["frame", *(each.title for each in columns)], rows
-
-
-def spelled(spec: str, value: float | None) -> str:
-    """A figure; nothing where there is none."""
-    return "" if value is None or value != value else format(value, spec)
+def is_measured(entry: Entry) -> bool:
+    """Whether an error was measured; it is NaN where pixels are."""
+    psnr = entry.values.get("psnr")
+    return psnr is not None and psnr == psnr
 
 
 def write_files(page: Page, folder: Path | None, json: Path | None) -> None:
     """Write the page and all figures."""
     from svgf_cl.compare import page as pages
-    from svgf_cl.compare.figures import figure
+    from svgf_cl.compare.figures import figure, file_name
     from svgf_cl.compare.record import results, table, write_text
     from svgf_cl.io.display import write_image
 
@@ -338,13 +323,8 @@ def write_files(page: Page, folder: Path | None, json: Path | None) -> None:
     write_text(folder / "results.json", results(page))
     write_text(folder / "results.csv", table(page))
     for number, scene in enumerate(page.scenes, 1):
-        write_image(output_folder(folder / "figures") / f"{number:02d}.{file_name(scene.name)}.png", figure(scene))
+        write_image(output_folder(folder / "figures") / file_name(number, scene.name), figure(scene))
     typer.echo(f"{folder}: index.html, results.json, results.csv, figures", err=json == STDOUT)
-
-
-def file_name(name: str) -> str:
-    """A scene's name with nothing in it that a file's name cannot have."""
-    return "".join(char if char.isalnum() or char in "-_" else "_" for char in name)[:60]
 
 
 def finish(limits: Limits, scenes: Sequence[Scene], junit: Path | None, *, each_frame: bool) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import math
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -27,13 +26,6 @@ def check_exposure(stops: float) -> float:
     if not -MAX_STOPS <= stops <= MAX_STOPS:  # NaN, too
         raise typer.BadParameter(f"expected stops in -{MAX_STOPS}..{MAX_STOPS}, got {stops:g}")
     return stops
-
-
-def check_threshold(value: float | None) -> float | None:
-    """Refuse NaN, which everything would miss."""
-    if value is not None and math.isnan(value):
-        raise typer.BadParameter("expected a number, got nan")
-    return value
 
 
 Frames = Annotated[

@@ -86,30 +86,31 @@ def compete(footage: Footage, makers: Mapping[str, Maker], exposure: float, adva
     makers : mapping of str to Maker
         The first is the one under test: it chooses the piece that clips show, where it is worst.
     exposure : float, stops
-        All light is multiplied by ``2**exposure`` before it is measured or shown.
+        Of all that is shown, and of what is measured as shown.
     advance : callable
         Called ``footage.steps + len(footage.numbers)`` times.
 
     Returns
     -------
     Scene
-        With the noisy frames first and the reference last among its entries.
+        Its entries are in the order of `makers`, with the reference behind them.
     """
-    gain = 2.0**exposure
-    truths = {number: (gain * first, gain * second) for number, (first, second) in footage.truths(advance).items()}
     judged = list(footage.judged)
+    if not judged:
+        raise ValueError(f"{footage.name}: expected a truth of at least one frame")
+    truths = footage.truths(advance)
     shown = judged[len(judged) // 2]
     switches = switches_in([truths[number] for number in judged])
     contestants = {name: Contestant(maker, Judge(switches)) for name, maker in makers.items()}
     reference = None
     before: tuple[int, Frame] | None = None
     for number, frame in zip(footage.numbers, footage.frames(), strict=True):
-        made = {name: gain * np.asarray(each.maker.denoise(frame)) for name, each in contestants.items()}
+        made = {name: np.asarray(each.maker.denoise(frame)) for name, each in contestants.items()}
         if number in truths:
             earlier = (before[1], truths[before[0]]) if before and before[0] == number - 1 else None
-            view = View(frame, truths[number], footage.jitter, earlier)
-            wanted = to_bytes(view.truth)
-            pictures = {name: to_bytes(picture) for name, picture in made.items()}
+            view = View(frame, truths[number], footage.jitter, earlier, exposure)
+            wanted = to_bytes(view.truth, exposure)
+            pictures = {name: to_bytes(picture, exposure) for name, picture in made.items()}
             if reference is None:
                 reference = Gallery(piece_to_show(pictures, wanted))
             reference.see(wanted, whole=number == shown)
@@ -120,12 +121,12 @@ def compete(footage: Footage, makers: Mapping[str, Maker], exposure: float, adva
             before = number, frame
         advance()
     if reference is None or reference.shown is None:
-        raise ValueError(f"{footage.name}: expected a truth of at least one frame")
+        raise ValueError(f"{footage.name}: expected a frame for each truth")
     wanted = reference.shown
     entries = [entry(name, each, wanted) for name, each in contestants.items()]
     return Scene(
         name=footage.name,
-        note=note_of(footage, truths),
+        note=note_of(footage, truths, exposure),
         frames=judged,
         shown=shown,
         size=footage.shape,
@@ -173,8 +174,8 @@ def moving(gallery: Gallery) -> dict[str, bytes | None]:
     return {"clip": imagery.clip(gallery.pieces), "profile": imagery.profile(gallery.rows)}
 
 
-def note_of(footage: Footage, truths: Mapping[int, Pair]) -> str:
+def note_of(footage: Footage, truths: Mapping[int, Pair], exposure: float) -> str:
     """The footage's own remark, and how far the halves of the truth are apart, where there are two."""
-    apart = [psnr(display(first), display(second)) for first, second in truths.values()]
+    apart = [psnr(display(first, exposure), display(second, exposure)) for first, second in truths.values()]
     noise = f"halves of the truth differ by {np.mean(apart):.1f} dB" if np.isfinite(apart).all() else ""
     return "; ".join(text for text in (footage.note, noise) if text)

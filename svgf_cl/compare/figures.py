@@ -12,10 +12,11 @@ from svgf_cl.io.display import Bytes
 from svgf_cl.io.panels import GAP, LABEL_HEIGHT, magnified, side_by_side
 
 WIDTH = 480  # pixels at most, of a panel
+LONGEST = 40  # characters of a name, of up to four bytes each
 
 
 def figure(scene: Scene) -> Bytes:
-    """All entries of a scene in a row, the noisy frame first and the reference last, and a piece of each."""
+    """All entries of a scene in a row, in their order, and a piece of each."""
     pictures = {each.rival: decoded(each.picture) for each in scene.entries}
     panels = {name: reduced(picture) for name, picture in pictures.items()}
     whole = side_by_side(panels)
@@ -29,6 +30,12 @@ def figure(scene: Scene) -> Bytes:
     return np.concatenate([whole, gap, side_by_side(pieces)[LABEL_HEIGHT:]])
 
 
+def file_name(number: int, name: str) -> str:
+    """What to call the figure of a scene: its number, and of its name what any system takes."""
+    safe = "".join(char if char.isalnum() or char in "-_" else "_" for char in name)
+    return f"{number:02d}.{safe[:LONGEST]}.png"
+
+
 def decoded(file: bytes) -> Bytes:
     """The picture in a file (H, W, 3)."""
     return np.asarray(Image.open(io.BytesIO(file)).convert("RGB"))
@@ -39,4 +46,6 @@ def reduced(picture: Bytes) -> Bytes:
     height, width, _ = picture.shape
     if width <= WIDTH:
         return picture
-    return np.asarray(Image.fromarray(picture).resize((WIDTH, round(height * WIDTH / width)), Image.Resampling.LANCZOS))
+    return np.asarray(
+        Image.fromarray(picture).resize((WIDTH, max(1, round(height * WIDTH / width))), Image.Resampling.LANCZOS)
+    )

@@ -12,6 +12,7 @@ from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Frame, Shape
 
 GROUP = "svgf_cl.footage"  # entry points of packages that render scenes; each is an `Opener`
+NEEDED, HINT = "comparing on scenes needs the tracer", "pip install '.[tracer]' in a clone of svgf_cl"
 
 
 class Footage(Protocol):
@@ -93,9 +94,12 @@ def opener() -> Opener:
     Raises
     ------
     SvgfError
-        Where no such package is installed.
+        Where no such package is installed, or it cannot be imported.
     """
     for entry in entry_points(group=GROUP):
-        found: Opener = entry.load()
+        try:
+            found: Opener = entry.load()
+        except ImportError as error:
+            raise SvgfError(f"{NEEDED} ({error}): {HINT}") from error
         return found
-    raise SvgfError("comparing on scenes needs the tracer: pip install '.[tracer]' in a clone of svgf_cl")
+    raise SvgfError(f"{NEEDED}: {HINT}")

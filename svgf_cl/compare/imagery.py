@@ -13,6 +13,7 @@ from svgf_cl.compare.metrics import flip_map, why_no_flip
 from svgf_cl.io.display import Bytes
 
 QUALITY = 92  # of a WebP: nothing is seen of it beside noise
+LARGEST = 16383  # pixels along a side of a WebP
 FPS = 8.0
 CLIP_HEIGHT = 240  # pixels at least: small pieces are magnified
 ROW_HEIGHT = 6  # pixels of a frame in a profile
@@ -49,9 +50,10 @@ class Piece:
 
 
 def encoded(picture: Bytes) -> bytes:
-    """A picture (H, W, 3) as a WebP file."""
+    """A picture (H, W, 3) as a WebP file; as PNG where it is too large for one."""
     file = io.BytesIO()
-    Image.fromarray(picture).save(file, format="WEBP", quality=QUALITY)
+    kind = "WEBP" if max(picture.shape) <= LARGEST else "PNG"
+    Image.fromarray(picture).save(file, format=kind, quality=QUALITY)
     return file.getvalue()
 
 
@@ -63,7 +65,7 @@ def error_map(shown: Bytes, wanted: Bytes) -> bytes | None:
 def clip(pieces: Sequence[Bytes]) -> bytes:
     """Pieces of consecutive pictures as an animated WebP file."""
     height, width, _ = pieces[0].shape
-    times = max(1, -(-CLIP_HEIGHT // height))
+    times = max(1, min(-(-CLIP_HEIGHT // height), LARGEST // max(height, width)))
     size = (times * width, times * height)
     first, *rest = (Image.fromarray(piece).resize(size, Image.Resampling.NEAREST) for piece in pieces)
     file = io.BytesIO()

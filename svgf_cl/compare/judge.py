@@ -96,6 +96,8 @@ class Judge:
             self._changes[len(self._scores)] = Change.of(self._last, sight)
             self._follow_lamps(sight, self._last.view)
             self._follow_ghosts(sight, self._last.view)
+        else:  # behind a gap nothing can be followed
+            self._unswitched = self._uncovered = None
         resting = view.resting if self._last else np.ones(view.frame.shape, np.bool_)
         self._flicker.see(sight.shown, view.shown_halves, resting)
         self._scores.append(Score.of(sight))

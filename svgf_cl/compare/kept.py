@@ -121,7 +121,8 @@ def laplacian(shown: Linear) -> Plane:
 def relative_covariance(light: NDArray[np.floating], other: NDArray[np.floating]) -> Plane:
     """Covariance of two planes within each window, each relative to its mean there, (H, W); 0 where a mean is."""
     means = window_mean(light) * window_mean(other)
-    return np.divide(window_mean(light * other) - means, means, out=np.zeros_like(means), where=means > 0)
+    with np.errstate(invalid="ignore"):  # pixels of a picture may be infinite, which leaves no number
+        return np.divide(window_mean(light * other) - means, means, out=np.zeros_like(means), where=means > 0)
 
 
 def window_mean(plane: NDArray[np.floating]) -> Plane:

@@ -6,12 +6,13 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from svgf_cl.compare.measures import MEASURES
+from svgf_cl.compare.measures import MEASURES, Measure
 from svgf_cl.compare.page import Scene
 from svgf_cl.errors import SvgfError
 from svgf_cl.gate import Check
 
-TITLES = {each.key: each for each in MEASURES}
+KNOWN = {each.key: each for each in MEASURES}
+OF_EACH_FRAME = ("psnr", "ssim", "flip", "relmse")  # the temporal error is one of two frames
 
 
 @dataclass(frozen=True)
@@ -32,40 +33,44 @@ class Limits:
     def checks(self, scene: Scene, rival: str, *, each_frame: bool = False) -> Iterator[Check]:
         """One check for each limit, of what a rival made of a scene; what was not measured fails.
 
-        With `each_frame`, one for each frame too, of the measures that every frame has.
+        With `each_frame`, one for each frame in its place where the measure is one of `OF_EACH_FRAME`.
         """
         (entry,) = [each for each in scene.entries if each.rival == rival]
         for side, limits in (("below", self.least), ("above", self.most)):
             for key, limit in limits.items():
-                curve = entry.curves.get(key, ()) if each_frame else ()
-                found = {f"{scene.name}.{rival}": entry.values.get(key)} if not curve else {}
-                found |= {f"{scene.name} {number}": value for number, value in zip(scene.frames, curve, strict=False)}
+                found = {f"{scene.name}.{rival}": entry.values.get(key)}
+                if each_frame and key in OF_EACH_FRAME:
+                    values = zip(scene.frames, entry.curves[key], strict=True)
+                    found = {f"{scene.name} {number}": value for number, value in values}
                 for group, value in found.items():
-                    yield Check(key, group, complaint(key, value, side, limit))
+                    yield Check(key, group, complaint(KNOWN[key], value, side, limit))
 
 
 def is_beyond(value: float, side: str, limit: float) -> bool:
-    """Whether a value misses a limit; NaN misses all."""
-    return not (value >= limit if side == "below" else value <= limit)
+    """Whether a value is on the wrong side of a limit."""
+    return value < limit if side == "below" else value > limit
 
 
-def complaint(key: str, value: float | None, side: str, limit: float) -> str:
+def complaint(measure: Measure, value: float | None, side: str, limit: float) -> str:
     """What is wrong with a value; empty where nothing is."""
-    measure = TITLES[key]
     if value is None or math.isnan(value):
-        return f"{measure.title} was not measured: the frames show nothing it is about"
-    return f"{measure.title} {format(value, measure.spec)} is {side} {limit:g}" if is_beyond(value, side, limit) else ""
+        return f"{measure.title} was not measured: pixels are NaN, or the frames show nothing it is about"
+    if not is_beyond(value, side, limit):
+        return ""
+    unit = f" {measure.unit}" if measure.unit else ""
+    bound = f"{100 * limit:g}%" if measure.spec.endswith("%") else f"{limit:g}"
+    return f"{measure.title} {measure.spell(value)}{unit} is {side} {bound}{unit}"
 
 
 def parsed(option: str, text: str) -> dict[str, float]:
     """Read ``psnr=30,ssim=0.9``."""
-    found = {}
+    found: dict[str, float] = {}
     for part in filter(None, text.split(",")):
         key, _, number = part.partition("=")
-        if key not in TITLES:
-            raise SvgfError(
-                f"{option}: expected MEASURE=NUMBER with a measure out of {', '.join(TITLES)}, got {part!r}"
-            )
+        if key not in KNOWN:
+            raise SvgfError(f"{option}: expected MEASURE=NUMBER with a measure out of {', '.join(KNOWN)}, got {part!r}")
+        if key in found:
+            raise SvgfError(f"{option}: expected each measure once, got {key} twice")
         try:
             found[key] = float(number)
         except ValueError as error:

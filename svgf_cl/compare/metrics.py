@@ -21,8 +21,7 @@ metrics NaN.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -57,11 +56,6 @@ def measure(picture: Linear, reference: Linear, exposure: float = 0.0) -> Metric
         raise SvgfError(f"expected two pictures of one shape, got {picture.shape} and {reference.shape}")
     shown, wanted = display(picture, exposure), display(reference, exposure)
     return Metrics(psnr(shown, wanted), ssim(shown, wanted), relmse(picture, reference))
-
-
-def mean(metrics: Sequence[Metrics]) -> Metrics:
-    """Average each metric over frames; PSNR as the mean of its decibels."""
-    return Metrics(*np.mean([astuple(m) for m in metrics], axis=0).tolist())
 
 
 def psnr(shown: Linear, wanted: Linear) -> float:

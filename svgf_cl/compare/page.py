@@ -136,8 +136,8 @@ Tally = Mapping[str, Mapping[str, Sequence[float]]]  # by rival and key: a value
 def write(page: Page, path: Path) -> None:
     """Write the page to a file."""
     text = render(page)
-    with written_whole(path) as aside:
-        aside.write_text(text, encoding="utf-8")
+    with written_whole(path) as aside:  # what is no text, as names of files may be, as Python would show it
+        aside.write_text(text, encoding="utf-8", errors="backslashreplace", newline="\n")
 
 
 def render(page: Page) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import csv
+import functools
 import hashlib
 import io
 import json
@@ -15,9 +16,9 @@ from typing import Any
 
 import svgf_cl
 from svgf_cl.compare.measures import MEASURES, Measure
+from svgf_cl.compare.metrics import why_no_flip
 from svgf_cl.compare.page import Entry, Page, Scene
 from svgf_cl.device.tuning import kernels_digest
-from svgf_cl.errors import FileError
 from svgf_cl.io.atomic import read_json, written_whole
 
 IMAGES = ("picture", "heat", "clip", "profile")  # of an `Entry`
@@ -72,25 +73,42 @@ def table(page: Page) -> str:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text, whole or not at all."""
+    """Write a text, whole or not at all; what is no text, as names of files may be, as Python would show it."""
     with written_whole(path) as aside:
-        aside.write_text(text, encoding="utf-8")
+        aside.write_text(text, encoding="utf-8", errors="backslashreplace", newline="\n")
 
 
-def part_name(footage_identity: str, rivals: Sequence[str], exposure: float) -> str:
-    """Name the part of a run that has all its own inputs, and this state of svgf_cl, in common with it."""
-    code = hashlib.sha256(kernels_digest().encode())
-    for source in sorted(Path(svgf_cl.__file__).parent.rglob("*.py")):
-        code.update(source.read_bytes())
-    inputs = json.dumps([footage_identity, list(rivals), exposure, code.hexdigest()])
+def part_name(footage_identity: str, rivals: Sequence[str], exposure: float, device: str) -> str:
+    """Name the part of a run that has all its own inputs, and this state of svgf_cl, in common with it.
+
+    Parameters
+    ----------
+    footage_identity : str
+    rivals : sequence of str
+        In order: the first chooses what clips show.
+    exposure : float, stops
+    device : str
+        What times were measured on.
+    """
+    inputs = json.dumps([footage_identity, list(rivals), exposure, device, why_no_flip(), code_digest()])
     return hashlib.sha256(inputs.encode()).hexdigest()[:24]
+
+
+@functools.cache
+def code_digest() -> str:
+    """What identifies this state of svgf_cl: kernels, code, and weights of networks."""
+    code = hashlib.sha256(kernels_digest().encode())
+    files = Path(svgf_cl.__file__).parent.rglob("*")
+    for source in sorted(path for path in files if path.suffix in (".py", ".json")):
+        code.update(source.read_bytes())
+    return code.hexdigest()
 
 
 def write_part(path: Path, scene: Scene) -> None:
     """Keep a scene that is done."""
     record = asdict(scene)
     for entry in record["entries"]:
-        entry |= {name: entry[name] and base64.b64encode(entry[name]).decode("ascii") for name in IMAGES}
+        entry |= {name: base64.b64encode(entry[name]).decode("ascii") for name in IMAGES if entry[name] is not None}
         entry["values"] = {key: plain(value) for key, value in entry["values"].items()}
         entry["curves"] = {key: [plain(value) for value in values] for key, values in entry["curves"].items()}
     write_text(path, json.dumps(record))
@@ -98,8 +116,6 @@ def write_part(path: Path, scene: Scene) -> None:
 
 def read_part(path: Path) -> Scene | None:
     """The scene that an earlier run has kept there; None where there is none, or it cannot be read."""
-    if not path.exists():
-        return None
     try:
         record = read_json(path)
         entries = [read_entry(each) for each in record.pop("entries")]
@@ -109,13 +125,13 @@ def read_part(path: Path) -> Scene | None:
             **{k: v for k, v in record.items() if k in names}
             | {"crop": crop, "size": tuple(record["size"]), "entries": entries}
         )
-    except (FileError, KeyError, TypeError, ValueError):
+    except (OSError, AttributeError, KeyError, TypeError, ValueError):
         return None
 
 
 def read_entry(record: dict[str, Any]) -> Entry:
     """One rival of a kept scene."""
-    images = {name: record[name] and base64.b64decode(record[name]) for name in IMAGES}
+    images = {name: base64.b64decode(record[name], validate=True) for name in IMAGES if record[name] is not None}
     values = {key: number(value) for key, value in record["values"].items()}
     curves = {key: [number(value) for value in each] for key, each in record["curves"].items()}
     return Entry(**record | images | {"values": values, "curves": curves})

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
 from svgf_cl.compare.halves import Pair
+from svgf_cl.compare.metrics import SSIM_WINDOW
 from svgf_cl.errors import FileError
 from svgf_cl.frame import Frame, Shape, extent
 from svgf_cl.io.atomic import require
 from svgf_cl.io.display import Linear
+from svgf_cl.io.exr import read_windows
 from svgf_cl.io.pictures import read_picture
-from svgf_cl.io.sequence import find_numbered, frame_number
+from svgf_cl.io.sequence import after_gaps, find_frames, find_numbered, frame_number
 from svgf_cl.io.shot import read_shot, shared_window
 
 NO_NUMBER = 0  # of the frame of a file that has none in its name
@@ -68,22 +70,31 @@ class Recorded:
 
     @property
     def identity(self) -> str:
-        """Names, sizes and times of all files."""
+        """Names, sizes and times of all files, and what is known of their rays."""
         files = [*self.paths.values(), *self.references.values()]
-        return " ".join(f"{path.resolve()}:{path.stat().st_size}:{path.stat().st_mtime_ns}" for path in files)
+        stamps = [f"{path.resolve()}:{path.stat().st_size}:{path.stat().st_mtime_ns}" for path in files]
+        return " ".join((*stamps, f"jitter={self.jitter}"))
 
     @cached_property
     def shape(self) -> Shape:
-        """Of the first reference."""
-        height, width, _ = read_picture(self.references[self.judged[0]]).shape
+        """Of the first reference; `FileError` where it is too small to be measured."""
+        path = self.references[self.judged[0]]
+        height, width, _ = read_picture(path).shape
+        if min(height, width) < SSIM_WINDOW:
+            least = extent((SSIM_WINDOW, SSIM_WINDOW))
+            raise FileError(
+                f"{path}: expected at least {least} pixels, which SSIM needs, got {extent((height, width))}"
+            )
         return height, width
 
     def frames(self) -> Iterator[Frame]:
-        """Frames as `svgf-cl denoise` reads them, on the window that all share."""
+        """Frames as `svgf-cl denoise` reads them, on their display window: that is where references show something."""
         paths = [self.paths[number] for number in self.numbers]
-        for path, (_, frame) in zip(paths, read_shot(paths, shared_window(paths)), strict=True):
+        shared_window(paths)  # says what keeps them from being one shot
+        window = read_windows(paths[0]).display
+        for path, (_, frame) in zip(paths, read_shot(paths, window), strict=True):
             check_size(path, frame.shape, self.shape)
-            yield frame
+            yield with_color(frame)
 
     def truths(self, advance: Callable[[], None]) -> Mapping[int, Pair]:
         """Read the references; the two halves of a pair are the same."""
@@ -108,6 +119,74 @@ class Pictures(Recorded):
             yield bare_frame(picture)
 
 
+def open_frames(frames: Sequence[Path], reference: Path, *, jitter: bool) -> Recorded:
+    """Frames, files or their folder, and a picture or a folder of them that says what some converge to.
+
+    Raises
+    ------
+    FileError
+        Where they are no sequence without gaps, or a reference has no frame.
+    """
+    files = find_frames(frames, allow_gaps=True)
+    for path in sorted(after_gaps(files)):
+        raise FileError(f"{path}: expected the frame before it, from which filters go on, found none")
+    paths = {number_of(path): path for path in files}
+    require(reference)
+    if reference.is_dir():
+        references = by_number(reference, "reference")
+    elif len(paths) == 1:
+        references = dict.fromkeys(paths, reference)
+    elif frame_number(reference) is None:
+        raise FileError(f"{reference}: expected in its name the number of one of the {len(paths)} frames, found none")
+    else:
+        references = {number_of(reference): reference}
+    for number, path in references.items():
+        if number not in paths:
+            raise FileError(f"{path}: expected a frame number {number} among the frames, found none")
+    return Recorded(paths, references, jitter)
+
+
+def open_pictures(pictures: Path, references: Path) -> Pictures:
+    """Two pictures; or two folders, paired by number: pictures without a reference are left out.
+
+    Raises
+    ------
+    FileError
+        Where one is a file and the other a folder, one holds no sequence, or a reference has no picture.
+    """
+    require(pictures)
+    require(references)
+    if pictures.is_dir() != references.is_dir():
+        raise FileError(f"expected two files or two folders, got {pictures} and {references}")
+    if not pictures.is_dir():
+        number = number_of(pictures)
+        return Pictures({number: pictures}, {number: references}, jitter=True)
+    tested, wanted = by_number(pictures, "frame"), by_number(references, "reference")
+    for number, path in wanted.items():
+        if number not in tested:
+            raise FileError(f"{pictures}: expected a picture number {number} to compare with {path}, found none")
+    return Pictures({number: tested[number] for number in wanted}, wanted, jitter=True)
+
+
+def by_number(folder: Path, stem: str) -> dict[int, Path]:
+    """The pictures of a folder by number, those called `stem` if any are; `FileError` where there is no sequence."""
+    return {number_of(path): path for path in find_numbered(folder, stem)}
+
+
+def number_of(path: Path) -> int:
+    """The number in a file's name, or `NO_NUMBER`."""
+    number = frame_number(path)
+    return NO_NUMBER if number is None else number
+
+
+def with_color(frame: Frame) -> Frame:
+    """The same frame with a colour, which may be given as two signals only."""
+    if frame.color is not None:
+        return frame
+    emission = 0.0 if frame.emission is None else frame.emission
+    return replace(frame, color=np.asarray(frame.direct + frame.indirect + emission, np.float32))
+
+
 def bare_frame(picture: Linear) -> Frame:
     """A frame of which nothing is known but its colour (H, W, 3)."""
     shape = picture.shape[:2]
@@ -120,34 +199,3 @@ def check_size(path: Path, have: Shape, want: Shape) -> None:
     """Raise `FileError` where a file is not of the size of the references."""
     if have != want:
         raise FileError(f"{path}: expected {extent(want)} pixels as in the references, got {extent(have)}")
-
-
-def by_number(place: Path, stem: str) -> dict[int, Path]:
-    """The pictures of a folder by number, or the only one where `place` is a file; those called `stem` if any are.
-
-    Raises
-    ------
-    FileError
-        Where there is nothing, or no sequence.
-    """
-    require(place)
-    if not place.is_dir():
-        return {NO_NUMBER: place}
-    return {frame_number(path) or 0: path for path in find_numbered(place, stem)}
-
-
-def paired(a: Path, b: Path) -> tuple[dict[int, Path], dict[int, Path]]:
-    """Pictures and references by number; of a folder's pictures those with no reference too.
-
-    Raises
-    ------
-    FileError
-        Where one is a file and the other a folder, or a reference has no picture.
-    """
-    pictures, references = by_number(a, "frame"), by_number(b, "reference")
-    if a.is_dir() != b.is_dir():
-        raise FileError(f"expected two files or two folders, got {a} and {b}")
-    for number, path in references.items():
-        if number not in pictures:
-            raise FileError(f"{a}: expected a picture number {number} to compare with {path}, found none")
-    return pictures, references

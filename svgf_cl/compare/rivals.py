@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Protocol
 
 import numpy as np
@@ -19,7 +18,6 @@ from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.temporal import TemporalFilter
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.display import Linear
-from svgf_cl.io.pictures import read_picture
 
 OIDN, OIDN_ACCUMULATED = "oidn", "oidn+accumulation"
 OTHERS = (OIDN, OIDN_ACCUMULATED)  # beside the filters
@@ -47,19 +45,6 @@ class Noisy:
         return np.asarray(frame.color)
 
 
-class Read:
-    """Reads pictures that were made before, in order."""
-
-    milliseconds: float | None = None
-
-    def __init__(self, paths: Sequence[Path]) -> None:
-        self._paths = iter(paths)
-
-    def denoise(self, frame: Frame) -> Linear:
-        """The next picture."""
-        return read_picture(next(self._paths))
-
-
 class Filtered:
     """A filter of this project; its time is that of its passes on the device."""
 
@@ -84,8 +69,9 @@ class FrameByFrame:
         self._filter = OidnFilter(shape, "high", threads_beside(default_device()))
 
     def denoise(self, frame: Frame) -> Linear:
-        """Run Open Image Denoise."""
-        self._filter.load(frame)
+        """Run Open Image Denoise; an infinite pixel, which would spoil the whole picture, comes in black."""
+        color = np.asarray(frame.color)
+        self._filter.load(replace(frame, color=np.where(np.isfinite(color), color, 0.0)))
         begin = time.perf_counter()
         self._filter.execute()
         self.milliseconds = 1e3 * (time.perf_counter() - begin)
@@ -102,7 +88,8 @@ class FrameByFrameAccumulated:
 
     def denoise(self, frame: Frame) -> Linear:
         """Run both."""
-        picture = self._then.denoise(replace(frame, color=np.asarray(self._first.denoise(frame), np.float32)))
+        color = np.asarray(self._first.denoise(frame), np.float32)
+        picture = self._then.denoise(replace(frame, color=color, direct=None, indirect=None))
         self.milliseconds = sum(each.milliseconds or 0.0 for each in (self._first, self._then))
         return picture
 

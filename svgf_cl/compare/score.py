@@ -28,7 +28,7 @@ class Sight:
     @cached_property
     def shown(self) -> Linear:
         """The picture, display-referred."""
-        return display(self.picture)
+        return display(self.picture, self.view.exposure)
 
 
 @dataclass(frozen=True)

@@ -47,8 +47,8 @@ class Covariance:
 
     @property
     def value(self) -> NDArray[np.float64]:
-        """The covariance, (H, W, 3); at least two pictures of each were taken."""
-        return np.asarray(self._product, np.float64) / (self._count - 1)
+        """The covariance, (H, W, 3); NaN of less than two pictures."""
+        return np.asarray(self._product, np.float64) / (self._count - 1 if self._count > 1 else np.nan)
 
 
 class Flicker:
@@ -66,7 +66,7 @@ class Flicker:
 
     @property
     def value(self) -> float:
-        """As defined above; at least two pictures were seen."""
+        """As defined above; NaN of less than two pictures."""
         variances = (series.value[self._resting] for series in (self._picture, self._truth))
         return excess(*(Share(float(variance.sum()), variance.size) for variance in variances))
 

@@ -31,12 +31,15 @@ class View:
         Whether pixels of the truth are means over their areas, which the albedo of one ray is not.
     earlier : Frame and two of (H, W, 3), optional
         The frame before, and halves of the truth about it, if they are known.
+    exposure : float, stops
+        Of all that is display-referred. What is linear stays as it is.
     """
 
     frame: Frame
     halves: Pair
     jitter: bool
     earlier: tuple[Frame, Pair] | None = None
+    exposure: float = 0.0
 
     @cached_property
     def truth(self) -> Linear:
@@ -46,12 +49,12 @@ class View:
     @cached_property
     def shown(self) -> Linear:
         """The truth, display-referred."""
-        return display(self.truth)
+        return display(self.truth, self.exposure)
 
     @cached_property
     def shown_halves(self) -> Pair:
         """The halves, display-referred."""
-        return display(self.halves[0]), display(self.halves[1])
+        return display(self.halves[0], self.exposure), display(self.halves[1], self.exposure)
 
     @cached_property
     def light(self) -> tuple[Plane, Plane]:

@@ -33,7 +33,7 @@ def test_help_names_every_command(capsys: pytest.CaptureFixture[str]) -> None:
     ("words", "argv"),
     [
         ("'juggle'; try 'svgf-cl --help'", ["juggle"]),
-        ("'A'; try 'svgf-cl compare --help'", ["compare"]),
+        ("'FRAMES'; try 'svgf-cl check --help'", ["check"]),
         ("'-o'", ["denoise", "frames"]),
         ("--bogus; try 'svgf-cl compare --help'", ["compare", "--bogus"]),
     ],

@@ -199,3 +199,30 @@ def test_a_lamp_is_seen_to_be_switched_in_spite_of_noise() -> None:
     assert switches_in(HALVES) == [3]
     assert switches_in(HALVES[:3]) == []
     assert findings(RIGHT[:3]).lags == ()
+
+
+def behind_gaps(pictures: list[np.ndarray], gaps: set[int]) -> Findings:
+    """Of pictures some of which follow on frames that nobody knows."""
+    judge, earlier = Judge(switches_in(HALVES)), None
+    for number, picture in enumerate(pictures):
+        judge.see(picture, View(floor(number), HALVES[number], False, None if number in gaps else earlier))
+        earlier = floor(number), HALVES[number]
+    return judge.findings
+
+
+def test_behind_a_gap_nothing_is_followed_on() -> None:
+    stuck = [RIGHT[0]] * len(RIGHT)
+    assert behind_gaps(stuck, set()).lags == (None,)
+    # The lamp goes out before frame 3, and what is known of that ends before frame 4: 1 and not 3 frames are counted.
+    late = [*RIGHT[:3], RIGHT[2], *RIGHT[4:]]
+    assert behind_gaps(late, set()).lags == (1,)
+    assert behind_gaps(late, {4}).lags == (None,)
+    assert behind_gaps(late, {3}).lags == ()
+
+
+def test_where_every_frame_is_behind_a_gap_there_are_figures_of_single_frames_alone() -> None:
+    found = behind_gaps(RIGHT, set(range(len(RIGHT))))
+    over_time = found.temporal, found.temporal_on_surfaces, found.flicker, found.warped, found.moving_shadows
+    assert all(map(math.isnan, over_time))
+    assert found.psnr > 45
+    assert found.shadows == pytest.approx(1, abs=0.02)

@@ -110,11 +110,6 @@ def test_noise_lowers_every_metric() -> None:
     assert little.relmse < much.relmse
 
 
-def test_the_mean_is_taken_metric_by_metric() -> None:
-    found = metrics.mean([Metrics(20, 0.5, 0.1), Metrics(30, 0.7, 0.3)])
-    assert (found.psnr, found.ssim, found.relmse) == pytest.approx((25, 0.6, 0.2))
-
-
 def test_sizes_are_checked() -> None:
     with pytest.raises(SvgfError, match="one shape"):
         metrics.measure(grey(0.5, 16), grey(0.5, 17))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ pytest.importorskip("skimage")
 from svgf_cl.compare.score import Change, Score, Sight
 from svgf_cl.compare.share import Share
 from svgf_cl.compare.view import View
+from svgf_cl.io.display import display
 from tests.frames import wall
 
 SHAPE = (16, 24)
@@ -45,3 +48,11 @@ def test_where_the_frame_before_is_not_known_nothing_is_warped() -> None:
     change = Change.of(Sight(TRUTH, BEFORE), Sight(TRUTH, BEFORE))
     assert change.everywhere.value == 0
     assert change.warped == change.warped_truth == Share()
+
+
+def test_light_is_measured_as_it_is_and_the_rest_as_shown() -> None:
+    usual, dark = (Score.of(Sight(0.5 * TRUTH, replace(NOW, exposure=stops))) for stops in (0.0, -4.0))
+    assert (dark.relmse, dark.relmse_trimmed, dark.brightness) == (usual.relmse, usual.relmse_trimmed, usual.brightness)
+    expected = np.mean((display(TRUTH / 16) - display(TRUTH / 32)) ** 2)
+    assert dark.error.value == pytest.approx(expected)
+    assert dark.error.value < 0.5 * usual.error.value

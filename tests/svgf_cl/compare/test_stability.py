@@ -100,3 +100,10 @@ def test_nothing_found_again_is_no_figure() -> None:
 def test_a_square_estimated_below_0_has_no_root() -> None:
     assert [root(0.25), root(-1e-9)] == [0.5, 0]
     assert math.isnan(root(math.nan))
+
+
+@pytest.mark.filterwarnings("error")
+def test_of_one_picture_nothing_is_known() -> None:
+    found = Flicker()
+    found.see(TRUTH, (TRUTH, TRUTH), EVERYWHERE)
+    assert math.isnan(found.value)

@@ -9,6 +9,7 @@ import pytest
 
 from svgf_cl import Frame
 from svgf_cl.compare.view import View
+from svgf_cl.io.display import display
 from tests.frames import wall
 
 SHAPE = (12, 20)
@@ -55,3 +56,11 @@ def test_light_is_looked_at_on_one_colour_alone_where_rays_are_jittered() -> Non
     assert view().lit[6, 9]
     assert not view(jitter=True).lit[6, 9]
     assert view(jitter=True).lit[6, 5]
+
+
+def test_what_is_shown_is_exposed_and_what_is_light_is_not() -> None:
+    dark = replace(view(), exposure=-3.0)
+    np.testing.assert_allclose(dark.shown, display(np.full((*SHAPE, 3), 0.3 / 8)))
+    np.testing.assert_allclose(dark.shown_halves[1], display(HALVES[1] / 8))
+    np.testing.assert_array_equal(dark.truth, view().truth)
+    np.testing.assert_array_equal(dark.light[0], view().light[0])

@@ -63,9 +63,9 @@ def test_denoise_and_compare_as_people_do(rendered: Path, tmp_path: Path, capsys
     assert all(np.isfinite(read_picture(out / name)).all() for name in NAMES)
 
     assert run("compare", out, rendered) == 0
-    assert "mean" in capsys.readouterr().out
-    assert run("compare", out, rendered, "--min-psnr", "12", "--min-ssim", "0.2") == 0
-    assert run("compare", out, rendered, "--min-psnr", "99", "--min-ssim", "0.99", "--max-relmse", "0") == 1
+    assert "all" in capsys.readouterr().out
+    assert run("compare", out, rendered, "--fail-below", "psnr=12,ssim=0.2") == 0
+    assert run("compare", out, rendered, "--fail-below", "psnr=99,ssim=0.99", "--fail-above", "relmse=0") == 1
     said = capsys.readouterr().err
     assert "0: PSNR" in said
     assert "below 99 dB" in said

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -10,7 +11,6 @@ from typing import TYPE_CHECKING
 
 from svgf_cl.compare.footage import Choice
 from svgf_cl.compare.halves import Pair
-from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.display import Linear
 from svgf_cl_tracer.cli.scenes import open_scene, require_tracer
@@ -119,9 +119,7 @@ def open_footage(scene: str, choice: Choice) -> Traced:
     SvgfError
         Where there is no such scene, or it cannot be used.
     """
-    require_tracer()
+    require_tracer(sys.stderr)  # the standard output may be figures for a program
     footage = Traced(scene, choice)
-    if len(footage.numbers) < 1:
-        raise SvgfError(f"--frames: expected at least 1, got {choice.frames}")
     footage.identity  # noqa: B018  # opens the scene: what is wrong with it is said before anything is rendered
     return footage

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 from svgf_cl.errors import SvgfError
 
@@ -12,8 +12,11 @@ if TYPE_CHECKING:
     from svgf_cl_tracer import Environment, Scene
 
 
-def require_tracer() -> None:
-    """Raise `SvgfError`, with the command that installs it, where the tracer or something it needs is missing."""
+def require_tracer(remarks: TextIO | None = None) -> None:
+    """Raise `SvgfError`, with the command that installs it, where the tracer or something it needs is missing.
+
+    That it has to be compiled is said on `remarks`, by default the standard output.
+    """
     # trimesh swallows KeyboardInterrupt while it is being imported: until then Ctrl-C ends the process by itself.
     interrupt = signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:
@@ -27,7 +30,7 @@ def require_tracer() -> None:
     from svgf_cl_tracer.compiled import IS_KEPT, was_compiled
 
     if not was_compiled():
-        print(f"compiling the tracer: some twenty seconds{', this once' if IS_KEPT else ''}", flush=True)
+        print(f"compiling the tracer: some twenty seconds{', this once' if IS_KEPT else ''}", file=remarks, flush=True)
 
 
 def read_sky(text: str) -> tuple[float, float, float] | Environment:
