@@ -2,7 +2,8 @@
 //
 //   SBF, LEARNED 0:  w = w_a exp(-D_z / (2 gamma_depth^2) - D_n / (2 gamma_normal^2)),  and for scales i = 1, 2, ...
 //     c_i = sum g_i w c / sum g_i w,  g_i = exp(-|d|^2 / (2 sigma^2)) within 2 sigma,  sigma = 2^(i - 1)
-//     risk_i = (l(c_i) - l(c))^2 + 2 v / sum g_i w,  v = Var max(1 / N, alpha / (2 - alpha))
+//     risk_i = (l(c_i) - l(c))^2 + 2 v / sum g_i w,  v = Var s / (1 - s)
+//     s = min(max(1 / max(N, 2), alpha / (2 - alpha)), MOST_OF_A_FRAME)
 //   LBF, LEARNED 1:  c = sum w c / sum w,  w = w_a 2^-(p_d |d|^2 + p_z D_z + p_n D_n + p_l D_l)
 //     D_l = (l - l')^2 / (sqrt(gauss3x3(Var)) + 1e-3 l + 1e-12)^2
 //
@@ -76,6 +77,7 @@ KERNEL bilateral(const int4 size, const float albedo_threshold, const float dept
 }
 #else
 #define SCALES 4
+#define MOST_OF_A_FRAME 0.9f            // without accumulation nothing is known of a variance over time
 #define REACH_OF(scale) (2 << (scale))  // twice the standard deviation, in pixels
 
 // Colour and risk of a scale.
@@ -131,9 +133,11 @@ KERNEL bilateral(const int4 size, const float gamma_depth, const float gamma_nor
         }
     }
     const floatv frames = load_light(SHARED_PLANE(size, moments, MOMENTS_LENGTH) + here);
-    const floatv share_of_mean = max(1.0f / max(frames, (floatv)(1.0f)), (floatv)(alpha_color / (2.0f - alpha_color)));
+    const floatv newest = max(1.0f / max(frames, (floatv)(2.0f)), (floatv)(alpha_color / (2.0f - alpha_color)));
+    const floatv s_mean = min(newest, (floatv)(MOST_OF_A_FRAME));
+    const floatv of_mean = s_mean / (1.0f - s_mean);
     UNROLLED_FOR(s, SIGNALS) {
-        const floatv noise = share_of_mean * load_variance(PLANE(size, source, ILLUMINATION_VARIANCE, s, 0) + here);
+        const floatv noise = of_mean * load_variance(PLANE(size, source, ILLUMINATION_VARIANCE, s, 0) + here);
         put_candidate(sums[0][s], size, s, here, own[s], noise, candidate_1);
         put_candidate(sums[1][s], size, s, here, own[s], noise, candidate_2);
         put_candidate(sums[2][s], size, s, here, own[s], noise, candidate_3);

@@ -35,11 +35,15 @@ class Preset:
 
     scenes: tuple[str, ...]
     size: str
+    frames: int | None
+    judged: int | None
     spp: int
 
 
-USUAL = Preset(("cornell", "glossy", "swing", "switch", "sliding", "fence", "fireflies", "static"), "640x360", 128)
-QUICK = Preset(("cornell", "swing", "switch"), "320x180", 64)
+USUAL = Preset(
+    ("cornell", "glossy", "swing", "switch", "sliding", "fence", "fireflies", "static"), "640x360", None, None, 128
+)
+QUICK = Preset(("cornell", "swing", "switch"), "320x180", 32, 12, 64)
 
 
 def compare(
@@ -228,7 +232,7 @@ def of_scenes(
     shape = parse_size(size or preset.size)
     if min(shape) < SSIM_WINDOW:
         raise SvgfError(f"--size: expected at least {SSIM_WINDOW}x{SSIM_WINDOW} pixels, which SSIM needs, got {size}")
-    choice = Choice(shape, frames, judged, spp or preset.spp, jitter)
+    choice = Choice(shape, frames or preset.frames, judged or preset.judged, spp or preset.spp, jitter)
     open_footage = opener()
     return [open_footage(name, choice) for name in names]
 

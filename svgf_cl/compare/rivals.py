@@ -103,15 +103,18 @@ class Rival:
     name : str
     settings : Filter, optional
         Of a filter; None for `OTHERS`.
+    says_taa : bool
+        Whether the text says if there is to be temporal antialiasing.
     """
 
     name: str
     settings: Filter | None
+    says_taa: bool = False
 
     def maker(self, shape: Shape, *, jitter: bool) -> Maker:
-        """Make it for frames of a size; with `jitter` filters antialias over time, unless their settings say so."""
+        """Make it for frames of a size; with `jitter` filters antialias over time, unless the text says otherwise."""
         if self.settings is not None:
-            return Filtered(shape, antialiased(self.settings) if jitter else self.settings)
+            return Filtered(shape, antialiased(self.settings) if jitter and not self.says_taa else self.settings)
         if self.name == OIDN:
             return FrameByFrame(shape)
         return FrameByFrameAccumulated(shape, Accumulation(taa=jitter))
@@ -157,7 +160,8 @@ def rival(name: str, parts: Sequence[str], parse: Parser) -> Rival:
         return Rival(name, None)
     if kind not in FILTERS:
         raise SvgfError(f"--filters: expected names out of {', '.join((*FILTERS, *OTHERS))}, got {kind!r}")
-    return Rival(name, parse(kind, settings, "--filters"))
+    says_taa = any(text.startswith("taa=") for text in settings)
+    return Rival(name, parse(kind, settings, "--filters"), says_taa)
 
 
 def usual_rivals() -> str:

@@ -14,6 +14,7 @@ from svgf_cl.oracle.taps import Array, depth_gradient, luminance, shifted, squar
 from svgf_cl.oracle.temporal import Guides, Made, Stages, TemporalOracle, accumulated
 
 SIGMAS = (1, 2, 4, 8)  # pixels
+MOST_OF_A_FRAME = 0.9  # without accumulation nothing is known of a variance over time
 SMOOTHED = 3  # pixels to either side, of the risk
 
 
@@ -70,7 +71,8 @@ class Oracle(TemporalOracle[Sbf]):
         """Variance, the scales, and the choice."""
         yield "variance", {"variance": variance(accumulated(now, now["accumulated"]), guides, self.settings)}
         alpha = self.settings.alpha_color
-        noise = now["variance"] * np.maximum(1 / np.maximum(now["history_length"], 1), alpha / (2 - alpha))
+        share = np.minimum(np.maximum(1 / np.maximum(now["history_length"], 2), alpha / (2 - alpha)), MOST_OF_A_FRAME)
+        noise = now["variance"] * share / (1 - share)
         made: dict[str, Array] = {}
         for number, sigma in enumerate(SIGMAS, 1):
             filtered, total = scale(now["accumulated"], guides, sigma, self.settings)
