@@ -80,14 +80,14 @@ def test_without_open_image_denoise_it_is_left_out_and_who_asks_for_it_is_told(
 def test_filters_antialias_where_rays_move(jitter: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[object] = []
     monkeypatch.setattr(rivals, "Filtered", lambda shape, settings: made.append((shape, settings)))
-    wanted = parsed(",".join((*FILTERS, "svgf,taa=on")))
+    wanted = parsed(",".join((*FILTERS, "eaw,taa=off", "svgf,taa=on")))
     assert list(makers(wanted, SHAPE, jitter=jitter)) == [each.name for each in wanted]
     temporal = [kind for kind in FILTERS.values() if issubclass(kind, TemporalFilter)]
     assert {Settings, Accumulation} <= {*temporal}
-    assert made[:-1] == [
+    assert made[:-2] == [
         (SHAPE, kind(taa=True) if jitter and issubclass(kind, TemporalFilter) else kind()) for kind in FILTERS.values()
     ]
-    assert made[-1] == (SHAPE, Settings(taa=True))
+    assert made[-2:] == [(SHAPE, Eaw()), (SHAPE, Settings(taa=True))]
 
 
 def test_rivals_make_their_own_pictures_and_note_their_times() -> None:
