@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -12,9 +11,9 @@ import typer
 
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import Earlier, FilterName, SettingTexts, parse_settings, parse_size
+from svgf_cl.cli.verdict import leave_with
 from svgf_cl.errors import SvgfError
 from svgf_cl.filters import DEFAULT
-from svgf_cl.gate import Check, write_junit
 from svgf_cl.io.atomic import output_file, output_folder
 
 STDOUT = Path("-")  # as --json has it
@@ -122,7 +121,7 @@ def bench(
     for note in notes:
         typer.echo(note, err=piped)
     if earlier and fail_above:
-        judge(regressions.checks(earlier, run, fail_above), junit)
+        leave_with(regressions.checks(earlier, run, fail_above), "svgf-cl bench", junit)
 
 
 def check_gate(old: Path | None, fail_above: float | None, junit: Path | None) -> None:
@@ -131,16 +130,6 @@ def check_gate(old: Path | None, fail_above: float | None, junit: Path | None) -
         raise SvgfError("--fail-above: expected --compare OLD.json beside it, got none")
     if junit and not fail_above:
         raise SvgfError("--junit: expected --fail-above RATIO beside it, got none")
-
-
-def judge(checks: Sequence[Check], junit: Path | None) -> None:
-    """Write the JUnit file, if any, and leave with exit code 1 where a check failed, a line for each on stderr."""
-    if junit:
-        write_junit(junit, "svgf-cl bench", checks)
-    failed = [check for check in checks if check.complaint]
-    for check in failed:
-        typer.echo(f"{check.name}, {check.group}: {check.complaint}", err=True)
-    raise typer.Exit(1 if failed else 0)
 
 
 def parse_pattern(text: str) -> re.Pattern[str]:

@@ -15,12 +15,12 @@ import typer
 from svgf_cl import __version__
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import Exposure, parse_settings, parse_size
+from svgf_cl.cli.verdict import leave_with
 from svgf_cl.errors import SvgfError
 from svgf_cl.io.atomic import output_file, output_folder, require
 
 if TYPE_CHECKING:
     from svgf_cl.compare.footage import Footage
-    from svgf_cl.compare.limits import Limits
     from svgf_cl.compare.page import Entry, Page, Scene
     from svgf_cl.compare.rivals import Rival
 
@@ -151,7 +151,9 @@ def compare(
     page = page_of(scenes, exposure)
     report(page, by_frame=is_made, to_stdout=json == STDOUT)
     write_files(page, folder, json)
-    finish(limits, scenes, junit, each_frame=is_made)
+    tested = [(scene, scene.entries[0].rival) for scene in scenes]
+    checks = [check for each in tested for check in limits.checks(*each, each_frame=is_made)]
+    leave_with(checks, "svgf-cl compare", junit)
 
 
 def needs_packages() -> None:
@@ -329,18 +331,3 @@ def write_files(page: Page, folder: Path | None, json: Path | None) -> None:
     for number, scene in enumerate(page.scenes, 1):
         write_image(output_folder(folder / "figures") / file_name(number, scene.name), figure(scene))
     typer.echo(f"{folder}: index.html, results.json, results.csv, figures", err=json == STDOUT)
-
-
-def finish(limits: Limits, scenes: Sequence[Scene], junit: Path | None, *, each_frame: bool) -> None:
-    """Leave with exit code 1 where the first filter is beyond a limit, a line for each on stderr."""
-    from svgf_cl.gate import write_junit
-
-    checks = [
-        check for scene in scenes for check in limits.checks(scene, scene.entries[0].rival, each_frame=each_frame)
-    ]
-    if junit:
-        write_junit(junit, "svgf-cl compare", checks)
-    failed = [check for check in checks if check.complaint]
-    for check in failed:
-        typer.echo(f"{check.group}: {check.complaint}", err=True)
-    raise typer.Exit(1 if failed else 0)

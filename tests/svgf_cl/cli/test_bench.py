@@ -90,7 +90,7 @@ def test_the_gate_stops_what_became_slower(
 ) -> None:
     now(12.0, 12.0, 12.0)
     assert run("bench", "--compare", before, "--fail-above", "1.10", "--junit", tmp_path / "new" / "junit.xml") == 1
-    line = "svgf.frame.1280x720, Alpha: 10.00 ms before, 12.00 ms now (event time), 1.20 times as long\n"
+    line = "Alpha, svgf.frame.1280x720: 10.00 ms before, 12.00 ms now (event time), 1.20 times as long\n"
     assert capsys.readouterr().err == line
     (failure,) = ElementTree.parse(tmp_path / "new" / "junit.xml").getroot().iter("failure")
     assert failure.attrib["message"] in line

@@ -60,7 +60,7 @@ def test_every_frame_is_held_to_the_limits(rendered: Path, tmp_path: Path, capsy
     assert run("compare", tmp_path / "out", rendered, *limits, "--junit", file) == 1
     said = capsys.readouterr().err.splitlines()
     assert [line.split(" is ")[1] for line in said] == ["below 30 dB", "above 0.01"]
-    assert all(line.startswith("out 1: ") for line in said)
+    assert all(line.startswith("out 1, ") for line in said)
     suite = ElementTree.parse(file).getroot()
     assert (suite.get("tests"), suite.get("failures")) == ("6", "2")
     assert [case.get("classname") for case in suite.iter("testcase")] == 2 * ["out 0", "out 1", "out 2"]
