@@ -21,9 +21,10 @@ enum { LIGHT = 0, DEPTH = 1, NORMAL = 2, ALBEDO = 3, FEATURES = 4 };
 // Where a statistic counts 1/2: of light, depth, normal, albedo; and of noise.
 #define HALFWAY_OF(feature) ((feature) == LIGHT ? 0.3f : (feature) == DEPTH ? 0.01f : (feature) == NORMAL ? 0.1f : 0.5f)
 #define HALFWAY_NOISE 1.0f
-#define LEAST_POWER (-24.0f)  // of two, that a parameter may be
+#define LEAST_POWER -24.0f  // of two, that a parameter may be
 #define GREATEST_POWER 10.0f
-#define BLACK 1e-12f  // is added to the mean of light, which others are divided by
+#define MOST_APART 1e15f  // that two values may be: a statistic of it is 1 already, and its square is finite
+#define BLACK 1e-12f      // is added to the mean of light, which others are divided by
 
 // Where a feature's values are.
 typedef struct {
@@ -61,6 +62,12 @@ INLINE floatv feature_at(Planes planes, int feature, int k, int i) {
 #endif
 }
 
+// By how much two values of a feature differ, where `scale` is 1 over what the feature counts against. It is scaled
+// before it is squared: the square of a depth may be no float.
+INLINE floatv apart(floatv there, floatv here, floatv scale) {
+    return clamp((there - here) * scale, -MOST_APART, MOST_APART);
+}
+
 // Sums over one neighbourhood: differences of each channel from the pixel's own, their squares and magnitudes.
 typedef struct {
     floatv first[3], second, absolute, taps;
@@ -75,23 +82,23 @@ INLINE void add_differences(Sums *sums, const floatv *difference, floatv seen, i
     }
 }
 
-// `scale`: 1 over what the feature counts against.
-INLINE void see_sums(Layer *layer, int input, Sums sums, int feature, floatv scale) {
+INLINE void see_sums(Layer *layer, int input, Sums sums, int feature) {
     const floatv share = 1.0f / sums.taps;
     floatv squared_mean = (floatv)(0.0f);
     UNROLLED_FOR(k, CHANNELS_OF(feature)) squared_mean += (sums.first[k] * share) * (sums.first[k] * share);
     const floatv deviation = sqrt(max(sums.second * share - squared_mean, (floatv)(0.0f)));
     const floatv mean = feature == NORMAL ? sqrt(squared_mean) : sums.first[0] * share;
-    see(layer, input, squashed(deviation * scale, HALFWAY_OF(feature)));
-    see(layer, input + 1, squashed(sums.absolute * share * scale, HALFWAY_OF(feature)));
-    see(layer, input + 2, squashed(mean * scale, HALFWAY_OF(feature)));
+    see(layer, input, squashed(deviation, HALFWAY_OF(feature)));
+    see(layer, input + 1, squashed(sums.absolute * share, HALFWAY_OF(feature)));
+    see(layer, input + 2, squashed(mean, HALFWAY_OF(feature)));
 }
 
 // Square of half the difference of a feature between two taps, where both show something.
-INLINE floatv squared_difference(Planes planes, int feature, int behind, int ahead) {
+INLINE floatv squared_slope(Planes planes, int feature, int behind, int ahead, floatv scale) {
     floatv squares = (floatv)(0.0f);
     UNROLLED_FOR(k, CHANNELS_OF(feature)) {
-        const floatv slope = 0.5f * (feature_at(planes, feature, k, ahead) - feature_at(planes, feature, k, behind));
+        const floatv slope =
+            0.5f * apart(feature_at(planes, feature, k, ahead), feature_at(planes, feature, k, behind), scale);
         squares += slope * slope;
     }
     const intv seen = min(depth_at(planes, behind), depth_at(planes, ahead)) > 0.0f;
@@ -116,16 +123,16 @@ INLINE void see_feature(Layer *layer, int feature, Planes planes, int here, floa
             const int tap = here + dy * planes.size.z + dx;
             const floatv seen = where(depth_at(planes, tap) > 0.0f, (floatv)(1.0f), (floatv)(0.0f));
             floatv difference[3];
-            UNROLLED_FOR(k, channels) difference[k] = seen * (feature_at(planes, feature, k, tap) - own[k]);
+            UNROLLED_FOR(k, channels) difference[k] = seen * apart(feature_at(planes, feature, k, tap), own[k], scale);
             add_differences(&wide, difference, seen, channels);
             if (max(max(dx, -dx), max(dy, -dy)) <= NEAR) add_differences(&near, difference, seen, channels);
         }
     }
-    see_sums(layer, input, near, feature, scale);
-    see_sums(layer, input + 3, wide, feature, scale);
-    const floatv gradient = squared_difference(planes, feature, here - 1, here + 1) +
-                            squared_difference(planes, feature, here - planes.size.z, here + planes.size.z);
-    see(layer, input + STATISTICS - 1, squashed(sqrt(gradient) * scale, HALFWAY_OF(feature)));
+    see_sums(layer, input, near, feature);
+    see_sums(layer, input + 3, wide, feature);
+    const floatv gradient = squared_slope(planes, feature, here - 1, here + 1, scale) +
+                            squared_slope(planes, feature, here - planes.size.z, here + planes.size.z, scale);
+    see(layer, input + STATISTICS - 1, squashed(sqrt(gradient), HALFWAY_OF(feature)));
 }
 
 // Mean luminance of the wide neighbourhood.

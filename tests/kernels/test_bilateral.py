@@ -81,11 +81,22 @@ def test_no_light_crosses_an_edge_of_surfaces(kind: type[BilateralFilter], edge:
 
 
 @either
-def test_a_miss_keeps_its_light(kind: type[BilateralFilter]) -> None:
-    depth = np.where(noise()[..., 0] < 0.3, np.inf, 4.0)
+@pytest.mark.parametrize("near", [1e-15, 4.0, 1e19])
+def test_a_miss_keeps_its_light(kind: type[BilateralFilter], near: float) -> None:
+    depth = np.where(noise()[..., 0] < 0.3, np.inf, near)
     out, _ = feed(wall(color=noise(), depth=depth), kind=kind)
     missed = np.isinf(depth)
     assert_allclose(out[missed], noise()[missed], rtol=1e-5)
+
+
+@either
+@pytest.mark.parametrize("unit", [2.0**-60, 2.0**60])
+def test_any_unit_of_length_gives_the_same_picture(kind: type[BilateralFilter], unit: float) -> None:
+    """Even one in which the square of a difference of depth is no float."""
+    rng = np.random.default_rng(3)
+    depth = 16 * rng.uniform(0.5, 2.0, SHAPE)
+    usual, other = (wall(color=noise(), depth=scale * depth) for scale in (1.0, unit))
+    assert_allclose(feed(other, kind=kind)[0], feed(usual, kind=kind)[0], rtol=1e-5)
 
 
 def test_a_scale_on_a_wall_is_a_gaussian_of_its_width() -> None:

@@ -11,7 +11,7 @@ import pytest
 from svgf_cl.device import programs
 from svgf_cl.filters.formats import HALF_MAX
 from svgf_cl.filters.temporal import UNKNOWN
-from svgf_cl.oracle import albedo, bilateral, kalman, sbf, spatial, temporal, wavelet
+from svgf_cl.oracle import albedo, bilateral, kalman, lbf, sbf, spatial, temporal, wavelet
 
 # By the kernels' name. Where there are two values the second is that of 16-bit floats (HALF_HISTORY), or of 3x3 taps.
 EXPECTED = {
@@ -33,6 +33,10 @@ EXPECTED = {
     "RELATIVE_TOLERANCE": (spatial.LUMINANCE_TOLERANCE[0],),
     "LEAST_TOLERANCE": (spatial.LUMINANCE_TOLERANCE[1],),
     "MOST_OF_A_FRAME": (sbf.MOST_OF_A_FRAME,),
+    "HALFWAY_NOISE": (lbf.HALFWAY["noise"],),
+    "BLACK": (lbf.BLACK,),
+    "LEAST_POWER": (lbf.EXPONENTS[0],),
+    "GREATEST_POWER": (lbf.EXPONENTS[1],),
     "NORMAL_FLOOR": (bilateral.NORMAL_FLOOR,),
     "NORMAL_MOST": (bilateral.NORMAL_MOST,),
     "MIDDLE": (wavelet.SPLINES[2][0], wavelet.SPLINES[1][0]),
