@@ -4,26 +4,31 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from svgf_cl.filters.pipeline import Life, Pass, Quantity, Resource
+from svgf_cl.filters.pipeline import Access, Life, Pass, Resource, access
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.filters.spatial import SpatialFilter
+from svgf_cl.filters.taps import Taps
 
 
 @dataclass(frozen=True, kw_only=True)
 class BilateralFilter(SpatialFilter):
-    """A filter of accumulated light by means over a window, whose noise is known from the moments of luminance."""
+    """A filter that averages accumulated light over a window; the moments of luminance say how noisy it is."""
 
     def accumulated(self, inputs: Inputs) -> Resource:
-        """Accumulated noisy light, which is the next frame's history too, and the variance of its luminance."""
-        spread = Quantity("variance", 1, len(inputs.signals), self.variance_format, "variance")
-        return Resource("accumulated", "illumination", (self.color(inputs, "accumulated"), spread), Life.PAIR)
+        """Accumulated noisy light, which is also the next frame's history, and the variance of its luminance."""
+        return self.illumination(inputs, "accumulated", Life.PAIR, variance="variance")
 
     def filtered(self, inputs: Inputs) -> Resource:
         """Filtered light."""
         return Resource("filtered", "illumination", (self.color(inputs, "filtered"),))
 
+    def surface(self, inputs: Inputs, taps: Taps) -> Access:
+        """What a kernel reads of the guide to tell surfaces apart at these pixels."""
+        guide = self.guide(inputs)
+        return access(guide, taps={name: taps for name in guide.names if name != "id"})
+
     def first_passes(self, inputs: Inputs) -> tuple[Pass, ...]:
-        """Demodulation, accumulation, and the variance."""
+        """What comes before the window: demodulation, accumulation, and the variance."""
         accumulated = self.accumulated(inputs)
         return (
             self.demodulate_pass(inputs),

@@ -91,29 +91,29 @@ class Lbf(BilateralFilter):
 
     def network_pass(self, inputs: Inputs, parameters: Resource) -> Pass:
         """The parameters of every pixel."""
-        guide, taps = self.guide(inputs), grid(WIDE)
+        taps = grid(WIDE)
         return Pass(
             "network",
             "network",
             arrays={"network": Network.shipped().flat()},
             reads=(
-                access(guide, taps={name: taps for name in guide.names if name != "id"}),
+                self.surface(inputs, taps),
                 access(self.accumulated(inputs), "source", {"color": taps, "variance": grid(1)}),
                 access(self.moments(inputs), taps={"length": HERE}),
             ),
             writes=(access(parameters),),
-            operations=operations.network(inputs, len(taps.offsets), (INPUTS, HIDDEN, OUTPUTS)),
+            operations=operations.network(inputs, len(taps.offsets), (INPUTS, HIDDEN, OUTPUTS), EXP[self.precision]),
         )
 
     def bilateral_pass(self, inputs: Inputs, parameters: Resource) -> Pass:
         """The mean over the window."""
-        guide, taps = self.guide(inputs), grid(WINDOW)
+        taps = grid(WINDOW)
         return Pass(
             "bilateral",
             "bilateral",
             scalars={"albedo_threshold": self.albedo_threshold, "depth_slope_floor": self.depth_slope_floor},
             reads=(
-                access(guide, taps={name: taps for name in guide.names if name != "id"}),
+                self.surface(inputs, taps),
                 access(self.accumulated(inputs), "source", {"color": taps, "variance": grid(1)}),
                 access(parameters),
             ),

@@ -24,6 +24,7 @@ WEIGHT = DISTANCE + 1 + 2 * 3 + EXP["precise"]  # of a tap by depth and normal
 TOLERANCE = 4 + 2 + 1  # of depth, at a tap: |g . d|; plus the floor; reciprocal
 FOOTPRINT = 2 * (1 + 2 + 2) + GRADIENT + 4  # clamp, floor and fraction per axis; tolerance of depth
 FACET = 3 + 2 + 1  # normal, slope and floor times their sigmas
+FEATURES = GRADIENT + 6 + 3 + 4 * (DOT + 3) + 2 + 2 + 2  # 1 / psi_z; 2 n; |n - n'|^2 of four; the smaller; 1 / psi_n^2
 
 
 def demodulate(inputs: Inputs) -> float:
@@ -114,42 +115,42 @@ def wavelet(inputs: Inputs, taps: int, light: LightOperations) -> float:
     return GRADIENT + FACET + taps // 2 * TOLERANCE + taps * exponent + len(inputs.signals) * per_signal
 
 
-def features(inputs: Inputs) -> float:
-    """Section 8: what a tap's depth and normal are compared with, at the pixel itself."""
-    normals = 3 + 4 * (DOT + 2) + 2 + 2 + 2  # times 2; of four neighbours; the smaller; their sum; 1 / psi_n^2
-    return GRADIENT + 5 + normals
-
-
 def feature_distance(inputs: Inputs) -> float:
     """Section 8: D_z, D_n and w_a of a tap."""
     return 3 + DOT + 3 + 1 + (ALBEDO if inputs.divides_by_albedo else 0)
 
 
 def scales(inputs: Inputs, taps: Sequence[int], exponential: float) -> float:
-    """Section 8: a cross-bilateral filter of so many taps at each scale, and the risk of each; SBF."""
+    """Section 8: a cross-bilateral filter of so many taps beside the middle one at each scale, and its risk; SBF."""
     signals = len(inputs.signals)
-    weights = (max(taps) - 1) * (feature_distance(inputs) + 4 + exponential + 2)
+    weights = max(taps) * (feature_distance(inputs) + 4 + exponential + 2)
     sums = sum(taps) * (2 + signals * (2 * 3 + 1))
-    return features(inputs) + weights + sums + signals * (2 + len(taps) * (1 + 3 + 2 + 2))
+    share = 2 + 2 + 2 + 2  # 1 / N; alpha / (2 - alpha) and the greater; the limit; s / (1 - s)
+    return FEATURES + weights + sums + share + signals * (2 + len(taps) * (1 + 3 + 2 + 2))
 
 
 def window(inputs: Inputs, taps: int, exponential: float) -> float:
     """Section 8: a cross-bilateral filter of so many taps beside the middle one, with parameters of its own; LBF."""
     signals = len(inputs.signals)
-    weight = 2 + 1 + 4 * 2 + exponential + 2  # D_l; the exponent
-    once = SMOOTH_VARIANCE + 3 + 1 + 3
-    return features(inputs) + taps * (feature_distance(inputs) + signals * (weight + 2 * 3 + 1)) + signals * once
+    weight = 3 + 4 * 2 + exponential + 2  # D_l; the exponent; whether it counts
+    once = SMOOTH_VARIANCE + 4 + 1 + 3  # the parameters' unit; the quotients
+    return FEATURES + taps * (feature_distance(inputs) + signals * (weight + 2 * 3 + 1)) + signals * once
 
 
-def network(inputs: Inputs, taps: int, layers: tuple[int, int, int]) -> float:
-    """Section 8: statistics of four features over so many taps, and the layers of the network; LBF."""
+def network(inputs: Inputs, taps: int, layers: tuple[int, int, int], exponential: float) -> float:
+    """Section 8: statistics of four features over so many taps, and the layers of the network; LBF.
+
+    Signals have the statistics of the surface in common.
+    """
     sees, hidden, makes = layers
-    channels = 1 + 1 + 3 + (1 if inputs.divides_by_albedo else 0)
-    sums = taps * (2 + channels * (1 + 1 + 2 + 2)) + 9 * channels * (1 + 2 + 2)
+    signals = len(inputs.signals)
+    channels = signals + 1 + 3 + (1 if inputs.divides_by_albedo else 0)  # light, depth, normal, albedo
+    sums = taps * (1 + 1 + 2 + 2) + 9 * (1 + 2 + 2)  # f(q) - f(p); its sum; of its squares; of its magnitudes
+    ends = 2 * (1 + 1 + 2 + 2) + 2 * 3 + 1  # of both neighbourhoods: the means; the deviation; then the gradient
     squashing = sees * (1 + 1 + 1 + 1) + hidden * 3
-    return len(inputs.signals) * (
-        sums + squashing + 2 * sees * hidden + 2 * hidden * makes + SMOOTH_VARIANCE + makes * (2 + EXP["precise"])
-    )
+    products = 2 * sees * hidden + 2 * hidden * makes
+    per_signal = squashing + products + SMOOTH_VARIANCE + makes * (2 + exponential)
+    return 2 * taps + channels * (sums + ends) + signals * per_signal
 
 
 def choice(inputs: Inputs, taps: int, candidates: int) -> float:

@@ -12,7 +12,7 @@ from svgf_cl.filters.bilateral import BilateralFilter
 from svgf_cl.filters.operations import EXP
 from svgf_cl.filters.pipeline import Pass, Pipeline, Quantity, Resource, access
 from svgf_cl.filters.signals import Inputs
-from svgf_cl.filters.taps import CROSS, HERE, grid
+from svgf_cl.filters.taps import HERE, grid
 from svgf_cl.settings import documented, number
 
 SIGMAS = (1.0, 2.0, 4.0, 8.0)  # pixels, of the scales
@@ -58,41 +58,37 @@ class Sbf(BilateralFilter):
 
     def candidate(self, inputs: Inputs, scale: int) -> Resource:
         """Light filtered at one scale, and the estimate of its error."""
-        signals = len(inputs.signals)
-        risk = Quantity("risk", 1, signals, stage=f"risk_{scale}")
+        risk = Quantity("risk", 1, len(inputs.signals), stage=f"risk_{scale}")
         return Resource(f"candidate_{scale}", "candidate", (risk, self.color(inputs, f"scale_{scale}")))
 
     def bilateral_pass(self, inputs: Inputs, candidates: tuple[Resource, ...]) -> Pass:
         """The mean over the window at all scales."""
         names = ("gamma_depth", "gamma_normal", "albedo_threshold", "depth_slope_floor", "alpha_color")
-        guide, taps = self.guide(inputs), grid(WINDOW)
-        seen = {name: taps for name in guide.names if name != "id"}
+        taps = grid(WINDOW)
         return Pass(
             "bilateral",
             "bilateral",
             scalars={name: getattr(self, name) for name in names},
             arrays={"gaussian": gaussian()},
             reads=(
-                access(guide, taps=seen),
+                self.surface(inputs, taps),
                 access(self.accumulated(inputs), "source", {"color": taps, "variance": HERE}),
                 access(self.moments(inputs), taps={"length": HERE}),
             ),
             writes=tuple(map(access, candidates)),
             operations=operations.scales(
-                inputs, [(2 * int(2 * sigma) + 1) ** 2 for sigma in SIGMAS], EXP[self.precision]
+                inputs, [(2 * int(2 * sigma) + 1) ** 2 - 1 for sigma in SIGMAS], EXP[self.precision]
             ),
         )
 
     def select_pass(self, inputs: Inputs, candidates: tuple[Resource, ...]) -> Pass:
         """The choice of a scale."""
-        guide = self.guide(inputs)
-        seen = {name: SMOOTHED | CROSS if name == "depth" else SMOOTHED for name in guide.names if name != "id"}
         return Pass(
             "select",
             "select_scale",
             scalars=self.surface_scalars,
             reads=(
-                access(guide, taps=seen),
+                self.surface(inputs, SMOOTHED),
                 *(access(each, taps={"risk": SMOOTHED, "color": HERE}) for each in candidates),
             ),
             writes=(access(self.filtered(inputs), "target"),),
