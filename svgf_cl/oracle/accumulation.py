@@ -14,11 +14,6 @@ class Oracle(TemporalOracle[Accumulation]):
 
     history: ClassVar[str] = "accumulated"
 
-    @property
-    def alpha_moments(self) -> float:
-        """As colour; nothing reads the moments."""
-        return self.settings.alpha_color
-
     def spatial(self, now: Stages, guides: Guides) -> Generator[Made, None, str]:
         """Nothing."""
         yield from ()

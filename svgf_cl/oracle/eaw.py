@@ -50,11 +50,6 @@ class Oracle(TemporalOracle[Eaw]):
 
     history: ClassVar[str] = "accumulated"
 
-    @property
-    def alpha_moments(self) -> float:
-        """As colour; the levels do not read the moments."""
-        return self.settings.alpha_color
-
     def spatial(self, now: Stages, guides: Guides) -> Generator[Made, None, str]:
         """The levels."""
         source = "accumulated"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Generator
 from typing import ClassVar
 
 import numpy as np
@@ -12,7 +12,7 @@ from svgf_cl.frame import Shape
 from svgf_cl.oracle.albedo import OCTAVE, albedo_codes
 from svgf_cl.oracle.bilateral import Deviations, counts, surface_distance
 from svgf_cl.oracle.spatial import luminance_tolerance, variance
-from svgf_cl.oracle.taps import Array, Offset, luminance, shifted, smoothed, square
+from svgf_cl.oracle.taps import Array, Mask, Offset, luminance, shifted, smoothed, square
 from svgf_cl.oracle.temporal import Guides, Made, Stages, TemporalOracle, accumulated
 
 WINDOW = 10  # pixels to either side, of the filter
@@ -23,13 +23,13 @@ EXPONENTS = (-24.0, 10.0)  # of the powers of two that parameters are
 
 
 def squashed(value: Array, halfway: float) -> Array:
-    """X / (|x| + halfway): -1..1."""
+    """The value over the sum of its magnitude and `halfway`, in -1..1."""
     result: Array = value / (np.abs(value) + halfway)
     return result
 
 
 def features(light: Array, guides: Guides) -> dict[str, Array]:
-    """What statistics are of, by name, each (S or 1, H, W, channels); albedo in octaves, the mean of its channels."""
+    """The features by name, each (S or 1, H, W, channels); that of albedo is in octaves, the mean of its channels."""
     octaves = (
         np.zeros(guides.depth.shape) if guides.albedo is None else albedo_codes(guides.albedo).mean(axis=-1) / OCTAVE
     )
@@ -41,23 +41,23 @@ def features(light: Array, guides: Guides) -> dict[str, Array]:
     }
 
 
-def neighbours(values: Array, guides: Guides, radius: int) -> Iterator[tuple[Array, Array]]:
-    """For each tap: its difference from the pixel, and 1 where both show something."""
-    for offset in square(radius):
-        y, x, inside = shifted(offset, guides.depth.shape)
-        seen = (inside & guides.hit & guides.hit[y, x]).astype(np.float64)
-        yield np.where(seen[..., None] > 0, values[:, y, x] - values, 0), seen
+def difference(values: Array, guides: Guides, offset: Offset) -> tuple[Array, Mask]:
+    """By how much a tap differs from the pixel, 0 where not both show something; and where they do, (H, W)."""
+    y, x, inside = shifted(offset, guides.depth.shape)
+    seen: Mask = inside & guides.hit & guides.hit[y, x]
+    return np.where(seen[..., None], values[:, y, x] - values, 0), seen
 
 
 def spread(values: Array, guides: Guides, radius: int) -> tuple[Array, Array, Array]:
     """Deviation, mean absolute difference from the pixel, and mean difference, (S, H, W[, channels]); section 8."""
     total: Array = np.zeros(guides.depth.shape)
     first, second, absolute = np.zeros_like(values), np.zeros(values.shape[:-1]), np.zeros(values.shape[:-1])
-    for difference, seen in neighbours(values, guides, radius):
+    for offset in square(radius):
+        off, seen = difference(values, guides, offset)
         total = total + seen
-        first += difference
-        second += np.square(difference).sum(axis=-1)
-        absolute += np.abs(difference).sum(axis=-1)
+        first += off
+        second += np.square(off).sum(axis=-1)
+        absolute += np.abs(off).sum(axis=-1)
     total = np.maximum(total, 1)
     mean = first / total[..., None]
     squares = np.maximum(second / total - np.square(mean).sum(axis=-1), 0)
@@ -67,21 +67,15 @@ def spread(values: Array, guides: Guides, radius: int) -> tuple[Array, Array, Ar
 def gradient_of(values: Array, guides: Guides) -> Array:
     """Length of the central difference per pixel, 0 along an axis where a neighbour shows nothing: (S, H, W)."""
     squares = np.zeros(values.shape[:-1])
-    for axis in ((1, 0), (0, 1)):
-        (ahead, seen), (behind, too) = (tap(values, guides, (sign * axis[0], sign * axis[1])) for sign in (1, -1))
-        along = np.where((seen * too)[..., None] > 0, (ahead - behind) / 2, 0)
+    for dx, dy in ((1, 0), (0, 1)):
+        (ahead, seen), (behind, too) = (difference(values, guides, at) for at in ((dx, dy), (-dx, -dy)))
+        along = np.where((seen & too)[..., None], (ahead - behind) / 2, 0)
         squares += np.square(along).sum(axis=-1)
     return np.sqrt(squares)
 
 
-def tap(values: Array, guides: Guides, offset: Offset) -> tuple[Array, Array]:
-    """Difference of one tap, and whether both show something."""
-    y, x, inside = shifted(offset, guides.depth.shape)
-    return values[:, y, x] - values, (inside & guides.hit & guides.hit[y, x]).astype(np.float64)
-
-
 def statistics(light: Array, noise: Array, length: Array, guides: Guides) -> Array:
-    """What the network sees, section 8: (S, H, W, `Network.INPUTS`).
+    """What the network sees, section 8: (S, H, W, INPUTS).
 
     Parameters
     ----------
@@ -109,7 +103,7 @@ def statistics(light: Array, noise: Array, length: Array, guides: Guides) -> Arr
 
 
 def parameters(seen: Array, network: Network) -> Array:
-    """What the network makes of statistics (..., INPUTS): the filter's parameters (..., OUTPUTS), in octaves each."""
+    """The filter's parameters (..., OUTPUTS) that the network makes of statistics (..., INPUTS)."""
     hidden = seen @ network.first.T + network.first_bias
     hidden = hidden / (1 + np.abs(hidden))
     made: Array = np.exp2(np.clip(hidden @ network.second.T + network.second_bias, *EXPONENTS))
@@ -147,11 +141,6 @@ class Oracle(TemporalOracle[Lbf]):
     def __init__(self, shape: Shape, settings: Lbf) -> None:
         super().__init__(shape, settings)
         self._network = Network.shipped()
-
-    @property
-    def alpha_moments(self) -> float:
-        """As colour."""
-        return self.settings.alpha_color
 
     def spatial(self, now: Stages, guides: Guides) -> Generator[Made, None, str]:
         """Variance, the network, and the window."""

@@ -62,11 +62,6 @@ class Oracle(TemporalOracle[Sbf]):
 
     history: ClassVar[str] = "accumulated"
 
-    @property
-    def alpha_moments(self) -> float:
-        """As colour."""
-        return self.settings.alpha_color
-
     def spatial(self, now: Stages, guides: Guides) -> Generator[Made, None, str]:
         """Variance, the scales, and the choice."""
         yield "variance", {"variance": variance(accumulated(now, now["accumulated"]), guides, self.settings)}

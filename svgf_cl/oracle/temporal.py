@@ -443,9 +443,9 @@ class TemporalOracle(FilterOracle[Chosen]):
         return (yield from self.spatial(now, guides))
 
     @property
-    @abstractmethod
     def alpha_moments(self) -> float:
-        """Least share of a new frame in the moments."""
+        """Least share of a new frame in the moments: as in colour, unless a filter has a setting for it."""
+        return self.settings.alpha_color
 
     @abstractmethod
     def spatial(self, now: Stages, guides: Guides) -> Generator[Made, None, str]:
