@@ -3,15 +3,15 @@
 //   SBF, LEARNED 0:  w = w_a exp(-D_z / (2 gamma_depth^2) - D_n / (2 gamma_normal^2)),  and for scales i = 1, 2, ...
 //     c_i = sum g_i w c / sum g_i w,  g_i = exp(-|d|^2 / (2 sigma^2)) within 2 sigma,  sigma = 2^(i - 1)
 //     risk_i = (l(c_i) - l(c))^2 + 2 v / sum g_i w,  v = Var s / (1 - s)
-//     s = min(max(1 / max(N, 2), alpha / (2 - alpha)), MOST_OF_A_FRAME)
-//   LBF, LEARNED 1:  c = sum w c / sum w,  w = w_a 2^-(p_d |d|^2 + p_z D_z + p_n D_n + p_l D_l)
+//     s = min(max(1 / max(N, 2), alpha_color / (2 - alpha_color)), MOST_OF_A_FRAME)
+//   LBF, LEARNED 1:  c = sum w c / sum w,  w = w_a 2^-(p_1 |d|^2 + p_2 D_z + p_3 D_n + p_4 D_l)
 //     D_l = (l - l')^2 / (sqrt(gauss3x3(Var)) + 1e-3 l + 1e-12)^2
 //
 // in   guide;  source: colour, variance;  SBF: moments: N;  LBF: parameters: p
 // out  SBF: candidate_1, ...: colour and risk of each scale;  LBF: target: colour
-// Li et al. 2012, equation 3 and section 3.2: risk is Stein's unbiased estimate of the squared error of luminance, less
-// v, which all scales have in common; the middle tap, whose w is 1, has the share 1 / sum g w. v is the variance of an
-// accumulated mean. Kalantari et al. 2015. D_z and D_n are those of features.clh.
+// Li et al. 2012, equation 3 and section 3.2: risk is Stein's unbiased estimate of the squared error of luminance,
+// without the term -v, which all scales have in common; the middle tap, whose w is 1, has the share 1 / sum g_i w. v is
+// the variance of the accumulated mean. LBF: Kalantari et al. 2015. D_z and D_n are those of features.clh.
 
 // Of one signal at one scale.
 typedef struct {

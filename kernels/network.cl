@@ -4,9 +4,9 @@
 //   something:  deviation, mean |f' - f|, mean f' - f (of n its length);  then the gradient's length
 //   sqrt(Var) and sqrt(gauss3x3(Var)) over the mean of l;  1 / N
 //   x = statistic / (|statistic| + halfway), 1 / N as it is
-//   h = b + W x;  p = 2^clamp(c + V h / (1 + |h|))
+//   h = W_1 x + b_1;  p = 2^clamp(W_2 h / (1 + |h|) + b_2)
 //
-// in   guide;  source: colour, variance;  moments: N;  network: W by columns, b, V by columns, c
+// in   guide;  source: colour, variance;  moments: N;  network: W_1 by columns, b_1, W_2 by columns, b_2
 // out  parameters: p, each in octaves of weight (bilateral.cl); 0 where nothing was hit
 // Kalantari et al. 2015, section 4. All statistics are free of scale and exposure.
 

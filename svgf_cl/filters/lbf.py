@@ -22,9 +22,9 @@ from svgf_cl.settings import documented
 
 INPUTS = 31  # statistics of a neighbourhood
 HIDDEN = 10
-OUTPUTS = 4  # the filter's parameters: of distance, depth, normal and light
+OUTPUTS = 4  # the filter's parameters: for distance, depth, normal and light
 WINDOW = 10  # pixels to either side
-WIDE = 3  # the same, of the statistics
+WIDE = 3  # the same, of the larger neighbourhood of the statistics
 FILE = "lbf.json"  # beside this module; `python -m benchmarks.training` writes it
 
 Weights = NDArray[np.float64]
@@ -55,7 +55,7 @@ class Network:
     @classmethod
     @cache
     def shipped(cls) -> Network:
-        """The one that comes with the library, as `FILE` has it beside the data and command that made it."""
+        """The network that comes with the library; `FILE` also says which data and command made it."""
         text = (resources.files("svgf_cl.filters") / FILE).read_text(encoding="utf-8")
         return cls.of(json.loads(text)["network"])
 
@@ -70,8 +70,8 @@ class Network:
 class Lbf(BilateralFilter):
     """Parameters of the learning-based filter (Kalantari et al. 2015). Equations: docs/algorithm.md, section 8.
 
-    A perceptron sees statistics of each pixel's neighbourhood and sets the parameters of a bilateral filter there. It
-    was trained on frames of this project's tracer (docs/lbf.md). For comparison.
+    A small network sees statistics of each pixel's neighbourhood and sets the parameters of a bilateral filter there.
+    It was trained on frames of this project's tracer (docs/lbf.md). For comparison.
     """
 
     name: ClassVar[str] = "lbf"
@@ -86,7 +86,7 @@ class Lbf(BilateralFilter):
             self.bilateral_pass(inputs, parameters),
             *self.last_passes(inputs, self.filtered(inputs)),
         )
-        macros = {"GUIDED_BY_VARIANCE": 1, "LEARNED": 1, "WINDOW": WINDOW, "INPUTS": INPUTS, "HIDDEN": HIDDEN}
+        macros = {"LEARNED": 1, "WINDOW": WINDOW, "INPUTS": INPUTS, "HIDDEN": HIDDEN}
         return Pipeline(passes, inputs.defines | self.macros | macros)
 
     def network_pass(self, inputs: Inputs, parameters: Resource) -> Pass:

@@ -53,7 +53,7 @@ class Sbf(BilateralFilter):
             self.select_pass(inputs, candidates),
             *self.last_passes(inputs, self.filtered(inputs)),
         )
-        macros = {"GUIDED_BY_VARIANCE": 1, "LEARNED": 0, "WINDOW": WINDOW}
+        macros = {"LEARNED": 0, "WINDOW": WINDOW}
         return Pipeline(passes, inputs.defines | self.macros | macros)
 
     def candidate(self, inputs: Inputs, scale: int) -> Resource:

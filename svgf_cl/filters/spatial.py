@@ -1,4 +1,4 @@
-"""What filters share that average light over space: which neighbours show the same surface, and how much light varies.
+"""What filters that average light over space share: which neighbours show one surface, and how much light varies.
 
 Equations: docs/algorithm.md, sections 3 and 4.
 """

@@ -1,4 +1,4 @@
-"""Float64 oracle of what spatial filters share: which neighbours show the same surface, and how much light varies."""
+"""Float64 oracle of what spatial filters share: which neighbours show one surface, and how much light varies."""
 
 from __future__ import annotations
 
