@@ -1,6 +1,6 @@
 """Fits each filter's own settings to training sequences, and says what that gains on others.
 
-A fair comparison gives every filter its best settings. They are fitted to rooms of chance (`benchmarks.training.rooms`)
+A fair comparison gives every filter its best settings. They are fitted to random rooms (`benchmarks.training.rooms`)
 and judged on scenes that the fit has not seen. What is made small is the mean over sequences of
 
 ``log2(root mean square error) + log2(temporal error)``
@@ -58,11 +58,11 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class RoomFootage(Traced):
-    """A room of chance; its number stands for the scene's name."""
+    """A random room; its number stands for the scene's name."""
 
     @property
     def name(self) -> str:
-        """Which room."""
+        """The room's number."""
         return f"room {self.scene}"
 
     @cached_property
@@ -123,7 +123,7 @@ def fit(
     spp: Annotated[int, typer.Option(metavar="N", min=2, help="Samples per pixel of a truth.")] = 64,
     markdown_: Annotated[bool, typer.Option("--markdown", help="Print tables as markdown.")] = False,
 ) -> None:
-    """Fit settings to rooms of chance, and say what they gain on other scenes.
+    """Fit settings to random rooms, and say what they gain on other scenes.
 
     PYOPENCL_CTX chooses the device. Truths are kept in the user's cache folder.
     """
@@ -156,7 +156,7 @@ def rendered(footages: Sequence[Traced], title: str) -> list[Clip]:
 
 
 def badness(settings: Filter, clips: Sequence[Clip]) -> float:
-    """Mean over sequences."""
+    """Mean of a filter's badness over sequences."""
     return float(np.mean([clip.badness(settings) for clip in clips]))
 
 

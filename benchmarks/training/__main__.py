@@ -1,4 +1,4 @@
-"""Trains the network of LBF on rooms of chance, and writes it beside what made it.
+"""Trains the network of LBF on random rooms, and writes it beside what made it.
 
 docs/lbf.md says what is learned and how well it does.
 """
@@ -91,7 +91,7 @@ def train(
     held_out: Annotated[
         list[str], typer.Option(metavar="SCENE", help="A scene to judge by; may be repeated. Four rooms always are.")
     ] = [],  # noqa: B006
-    rooms: Annotated[int, typer.Option(metavar="N", min=1, help="Rooms of chance to train on.")] = 40,
+    rooms: Annotated[int, typer.Option(metavar="N", min=1, help="Random rooms to train on.")] = 40,
     rounds: Annotated[int, typer.Option(metavar="N", min=1, help="Rounds, each on other pixels.")] = 16,
     pixels: Annotated[int, typer.Option(metavar="N", min=1, help="Pixels of a round.")] = 60_000,
     size: Annotated[str, typer.Option(metavar="WxH", help="Size of the frames.")] = "240x136",

@@ -80,7 +80,7 @@ class Pixels:
         return cls(around, places, np.stack([each.seen for each in samples])[index], truth[index], scale[index])
 
     def some(self, count: int, seed: int) -> Pixels:
-        """As many of them, drawn by chance."""
+        """A random choice of `count` of them."""
         chosen = np.random.default_rng(seed).permutation(len(self.places))[:count]
         parts = (self.places[chosen], self.seen[chosen], self.truth[chosen], self.scale[chosen])
         return Pixels(self.around, *parts)

@@ -1,4 +1,4 @@
-"""Rooms of chance: scenes to train on, so that none that is used to judge has to be."""
+"""Random rooms: scenes to train on, so that scenes that filters are judged by need not be."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ class Maker(Protocol):
 
 
 class Noisy:
-    """Does nothing."""
+    """The frames as they come in."""
 
     milliseconds: float | None = None
 

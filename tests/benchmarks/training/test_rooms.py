@@ -1,4 +1,4 @@
-"""Rooms of chance are scenes: the same for the same seed, lit, and seen from inside."""
+"""Random rooms are scenes: the same for the same seed, lit, and seen from inside."""
 
 from __future__ import annotations
 
