@@ -16,8 +16,9 @@ LONGEST = 40  # characters of a name, of up to four bytes each
 
 
 def figure(scene: Scene) -> Bytes:
-    """All entries of a scene in a row, in their order, and a piece of each."""
-    pictures = {each.rival: decoded(each.picture) for each in scene.entries}
+    """The noisy frame, all filters and the reference in a row, and below each a magnified piece."""
+    entries = sorted(scene.entries, key=lambda each: (each.rival != scene.noisy, each.rival == scene.reference))
+    pictures = {each.rival: decoded(each.picture) for each in entries}
     panels = {name: reduced(picture) for name, picture in pictures.items()}
     whole = side_by_side(panels)
     if scene.crop is None:

@@ -45,6 +45,13 @@ def test_all_are_in_a_row_with_a_piece_of_each_below() -> None:
     assert {*piece[:, 40 + GAP :].ravel()} == {220}
 
 
+def test_the_noisy_frame_comes_first() -> None:
+    one = scene(20, 40, None)
+    noisy = Entry("noisy", {}, {}, None, marked(20, 40, 60), None, None, None)
+    found = figure(replace(one, entries=[one.entries[0], noisy, one.entries[1]], noisy="noisy"))
+    assert [int(found[LABEL_HEIGHT, number * (40 + GAP), 0]) for number in range(3)] == [60, 10, 120]
+
+
 def test_without_a_piece_there_are_pictures_alone() -> None:
     assert figure(scene(20, 40, None)).shape == (LABEL_HEIGHT + 20, 2 * 40 + GAP, 3)
 
