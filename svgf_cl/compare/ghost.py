@@ -11,6 +11,8 @@ moves along with the surface that was uncovered, as a filter's history does. Pix
 may be mixtures of what is on both sides. The truth's own noise is kept out by its halves, as in
 `svgf_cl.compare.halves`: no two factors of a product are of one half.
 
+Frames count in which o differs from t by `FAINT` or more, root mean square: below it a slope would be that of noise.
+
 A blur across the edge of what has just moved on looks the same and counts. So does geometry thinner than a pixel, where
 rays are jittered: read the figure beside that of the noisy frames, which have no past.
 """
@@ -29,6 +31,7 @@ from svgf_cl.frame import Shape
 from svgf_cl.io.display import Linear
 
 GHOST_FRAMES = 4
+FAINT = 0.1  # of what a screen shows
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,12 +71,15 @@ class Uncovered:
         return mask
 
     def left(self, shown: Linear, halves: Pair, inside: Mask) -> Share:
-        """How much of it is left in a display-referred picture, (H, W, 3), where it is `inside` of surfaces, (H, W)."""
+        """How much of it is left in a display-referred picture, (H, W, 3), where it is `inside` of surfaces, (H, W).
+
+        Nothing of nothing where what was seen before hardly differs from the truth.
+        """
         where = self.lately & inside
-        share = Share()
+        share, values = Share(), 2 * 3 * np.count_nonzero(where)
         for one, other in ((0, 1), (1, 0)):
             difference = (self.old[other] - halves[other])[where]
             part = (shown - halves[one])[where] * difference
             whole = (self.old[one] - halves[one])[where] * difference
             share += Share(float(part.sum()), float(whole.sum()))
-        return share
+        return share if share.whole > FAINT**2 * values else Share()

@@ -268,7 +268,7 @@ class TestUpdate:
 
     def test_takes_settings_alone(self) -> None:
         with pytest.raises(
-            SvgfError, match=r"expected settings=Kalman\(\.\.\.\) or Settings\(\.\.\.\) or Eaw\(\.\.\.\) or .*, got None"
+            SvgfError, match=r"expected settings=Kalman\(\.\.\.\) or Settings\(\.\.\.\) or .*, got None"
         ):
             Denoiser(TINY).update(None)  # type: ignore[arg-type]
 

@@ -66,6 +66,13 @@ def test_noise_and_other_faults_of_a_picture_are_no_ghost() -> None:
     assert uncovered().left(elsewhere, noisy(shown(18), 0.0), EVERYWHERE).value == 0
 
 
+def test_what_hardly_differs_from_the_truth_leaves_no_ghost() -> None:
+    faint = Uncovered(uncovered().age, noisy(shown(18) + 0.05, 0.0))
+    assert math.isnan(faint.left(shown(18) + 0.04, noisy(shown(18), 0.0), EVERYWHERE).value)
+    plain = Uncovered(uncovered().age, noisy(shown(18) + 0.2, 0.0))
+    assert plain.left(shown(18) + 0.05, noisy(shown(18), 0.0), EVERYWHERE).value == pytest.approx(0.25)
+
+
 def test_only_what_is_inside_of_surfaces_counts() -> None:
     picture = np.where((COLUMN == 17)[..., None], shown(10), shown(18))
     assert uncovered().left(picture, noisy(shown(18), 0.0), COLUMN < 17).value == 0
