@@ -13,9 +13,9 @@ from svgf_cl.compare.metrics import flip_map, why_no_flip
 from svgf_cl.io.display import Bytes
 
 QUALITY = 92  # of a WebP: nothing is seen of it beside noise
+MAP_QUALITY = 75  # of an error map, which is looked at for where errors lie
 LARGEST = 16383  # pixels along a side of a WebP
 FPS = 8.0
-CLIP_HEIGHT = 240  # pixels at least: small pieces are magnified
 ROW_HEIGHT = 6  # pixels of a frame in a profile
 PIECES = 4  # of a picture, along each side
 
@@ -49,25 +49,22 @@ class Piece:
         return picture[self.rows, self.columns]
 
 
-def encoded(picture: Bytes) -> bytes:
+def encoded(picture: Bytes, quality: int = QUALITY) -> bytes:
     """A picture (H, W, 3) as a WebP file; as PNG where it is too large for one."""
     file = io.BytesIO()
     kind = "WEBP" if max(picture.shape) <= LARGEST else "PNG"
-    Image.fromarray(picture).save(file, format=kind, quality=QUALITY)
+    Image.fromarray(picture).save(file, format=kind, quality=quality)
     return file.getvalue()
 
 
 def error_map(shown: Bytes, wanted: Bytes) -> bytes | None:
     """FLIP's map of the difference between two shown pictures (H, W, 3) as a WebP file; None where FLIP is missing."""
-    return None if why_no_flip() else encoded(flip_map(shown / 255.0, wanted / 255.0))
+    return None if why_no_flip() else encoded(flip_map(shown / 255.0, wanted / 255.0), MAP_QUALITY)
 
 
 def clip(pieces: Sequence[Bytes]) -> bytes:
-    """Pieces of consecutive pictures as an animated WebP file."""
-    height, width, _ = pieces[0].shape
-    times = max(1, min(-(-CLIP_HEIGHT // height), LARGEST // max(height, width)))
-    size = (times * width, times * height)
-    first, *rest = (Image.fromarray(piece).resize(size, Image.Resampling.NEAREST) for piece in pieces)
+    """Pieces of consecutive pictures as an animated WebP file; the page magnifies it."""
+    first, *rest = map(Image.fromarray, pieces)
     file = io.BytesIO()
     first.save(
         file, format="WEBP", save_all=True, append_images=rest, duration=round(1000 / FPS), loop=0, quality=QUALITY

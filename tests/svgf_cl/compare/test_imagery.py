@@ -37,22 +37,13 @@ def test_a_picture_too_large_for_webp_is_a_png() -> None:
     assert (file.format, file.size) == ("PNG", (16384, 1))
 
 
-def test_a_clip_shows_every_piece_magnified() -> None:
+def test_a_clip_shows_every_piece() -> None:
     levels = (0, 128, 255)
     file = opened(clip([np.full((30, 20, 3), level, np.uint8) for level in levels]))
-    assert (file.size, file.n_frames, file.info["loop"]) == ((160, 240), 3, 0)
+    assert (file.size, file.n_frames, file.info["loop"]) == ((20, 30), 3, 0)
     for number, level in enumerate(levels):
         file.seek(number)
         np.testing.assert_allclose(np.asarray(file.convert("RGB")), level, atol=4)
-
-
-@pytest.mark.parametrize(
-    ("shape", "size"), [((240, 10), (10, 240)), ((500, 30), (30, 500)), ((7, 9), (315, 245)), ((1, 400), (16000, 40))]
-)
-def test_a_clip_is_high_enough_to_see_something_and_no_larger_than_webp_allows(
-    shape: tuple[int, int], size: tuple[int, int]
-) -> None:
-    assert opened(clip([np.zeros((*shape, 3), np.uint8)] * 2)).size == size
 
 
 def test_a_profile_is_one_row_over_time() -> None:
