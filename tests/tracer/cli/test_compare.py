@@ -67,7 +67,7 @@ def test_json_is_all_that_is_printed_and_the_first_filter_is_tested(
     said = capsys.readouterr()
     (scene,) = json.loads(said.out)["scenes"]
     assert "rays go through pixel centres" in scene["note"]
-    assert "cornell.kalman: relMSE" in said.err
+    assert "cornell.kalman, relmse: relMSE" in said.err
     assert "noisy" not in said.err
     assert antialiased == [False]
 

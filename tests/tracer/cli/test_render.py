@@ -67,7 +67,7 @@ def test_denoise_and_compare_as_people_do(rendered: Path, tmp_path: Path, capsys
     assert run("compare", out, rendered, "--fail-below", "psnr=12,ssim=0.2") == 0
     assert run("compare", out, rendered, "--fail-below", "psnr=99,ssim=0.99", "--fail-above", "relmse=0") == 1
     said = capsys.readouterr().err
-    assert "0: PSNR" in said
+    assert "out 0, psnr: PSNR" in said
     assert "below 99 dB" in said
     assert "2: relMSE" in said
 
