@@ -69,7 +69,7 @@ def test_denoise_and_compare_as_people_do(rendered: Path, tmp_path: Path, capsys
     said = capsys.readouterr().err
     assert "out 0, psnr: PSNR" in said
     assert "below 99 dB" in said
-    assert "2: relMSE" in said
+    assert "out 2, relmse: relMSE" in said
 
 
 @pytest.mark.parametrize(
