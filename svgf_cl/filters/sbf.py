@@ -26,7 +26,7 @@ class Sbf(BilateralFilter):
     """Parameters of the SURE-based filter (Li et al. 2012). Equations: docs/algorithm.md, section 8.
 
     Light is filtered at four scales, and each pixel takes the one whose error is estimated to be least. For comparison:
-    it takes ten times as long as SVGF.
+    it takes six times as long as SVGF.
     """
 
     name: ClassVar[str] = "sbf"
