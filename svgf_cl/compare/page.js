@@ -288,7 +288,7 @@ function drawSpeed(box, key) {
 function label(drawing, name, x, y, taken) {
   const text = svg("text", {}, drawing, name.length > 32 ? `${name.slice(0, 31)}…` : name);
   const places = [["start", 10, 4], ["end", -10, 4], ["middle", 0, -11], ["middle", 0, 20], ["end", 6, -11], ["end", 6, 20],
-    ["start", -6, -11], ["start", -6, 20]];
+    ["start", -6, -11], ["start", -6, 20], ["end", 6, -24], ["end", 6, 34]];
   const free = box => box.left >= 0 && box.right <= drawing.clientWidth
     && !taken.some(other => box.left < other.right && box.right > other.left && box.top < other.bottom && box.bottom > other.top);
   for (const [anchor, across, down] of [...places, places[0]]) {
