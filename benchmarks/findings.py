@@ -12,7 +12,7 @@ from benchmarks.measurements import Quality, Result
 from benchmarks.presentation import MARK, Column, markdown, oracle_column, plot, quality_columns, table
 from svgf_cl.bench.report import Section, inline_png
 from svgf_cl.bench.tables import Table
-from svgf_cl.io.atomic import written_whole
+from svgf_cl.io.atomic import write_text, written_whole
 
 TITLE = "Speed against error"
 
@@ -66,10 +66,8 @@ class Findings:
 
     def write(self, folder: Path) -> None:
         """Write ``results.json``, ``table.md`` and ``plot.png``."""
-        with written_whole(folder / "results.json") as aside:
-            aside.write_text(json.dumps(asdict(self), indent=1), encoding="utf-8")
-        with written_whole(folder / "table.md") as aside:
-            aside.write_text(self.page, encoding="utf-8")
+        write_text(folder / "results.json", json.dumps(asdict(self), indent=1))
+        write_text(folder / "table.md", self.page)
         with written_whole(folder / "plot.png") as aside:
             aside.write_bytes(self.plot)
 

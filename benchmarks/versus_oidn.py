@@ -46,7 +46,7 @@ from svgf_cl.device import devices
 from svgf_cl.filters import DEFAULT
 from svgf_cl.filters.filter import Filter
 from svgf_cl.frame import Shape, extent
-from svgf_cl.io.atomic import written_whole
+from svgf_cl.io.atomic import write_text
 from svgf_cl.io.display import Linear
 
 AREA, _ = FOOTAGE
@@ -99,8 +99,7 @@ class Comparison:
         record: dict[str, Any] = {"about": self.about, "bytes": self.memory}
         record["seconds"] = {f"{name}, {clock}": seconds for (name, clock), seconds in self.times.items()}
         record["error"] = {name: asdict(found) for name, found in self.errors.items()}
-        with written_whole(path) as aside:
-            aside.write_text(json.dumps(record, indent=1), encoding="utf-8")
+        write_text(path, json.dumps(record, indent=1))
 
 
 def versus_oidn(

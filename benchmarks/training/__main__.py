@@ -29,7 +29,7 @@ from svgf_cl.cli.options import parse_size
 from svgf_cl.device import devices
 from svgf_cl.filters import lbf
 from svgf_cl.filters.lbf import Network
-from svgf_cl.io.atomic import output_file, read_json, written_whole
+from svgf_cl.io.atomic import output_file, read_json, write_text
 from svgf_cl.oracle.taps import Array
 from svgf_cl_tracer import Scene
 from svgf_cl_tracer.cli.scenes import open_scene
@@ -196,8 +196,7 @@ def write(path: Path, network: Network, progress: Progress, found: dict[str, dic
 
 def write_json(path: Path, record: object) -> None:
     """Write a record, whole or not at all."""
-    with written_whole(path) as aside:
-        aside.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    write_text(path, json.dumps(record, indent=1) + "\n")
 
 
 def main() -> None:

@@ -18,7 +18,7 @@ from pytest_benchmark.stats import Stats
 from svgf_cl import __version__
 from svgf_cl.bench.ceilings import Ceilings
 from svgf_cl.errors import SvgfError
-from svgf_cl.io.atomic import read_json, written_whole
+from svgf_cl.io.atomic import read_json, write_text
 
 
 @dataclass(frozen=True)
@@ -193,8 +193,7 @@ class Run:
 
     def write(self, path: Path) -> None:
         """Write the run as JSON, whole."""
-        with written_whole(path) as aside:
-            aside.write_text(self.text, encoding="utf-8")
+        write_text(path, self.text)
 
     @classmethod
     def read(cls, path: Path) -> Run:

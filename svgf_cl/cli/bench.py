@@ -10,13 +10,11 @@ from typing import Annotated
 import typer
 
 from svgf_cl.cli.console import progress_bar, show
-from svgf_cl.cli.options import Earlier, FilterName, SettingTexts, parse_settings, parse_size
+from svgf_cl.cli.options import STDOUT, Earlier, FilterName, SettingTexts, check_files, parse_settings, parse_size
 from svgf_cl.cli.verdict import leave_with
 from svgf_cl.errors import SvgfError
 from svgf_cl.filters import DEFAULT
-from svgf_cl.io.atomic import output_file, output_folder
-
-STDOUT = Path("-")  # as --json has it
+from svgf_cl.io.atomic import output_folder
 
 
 def check_ratio(value: float | None) -> float | None:
@@ -97,9 +95,7 @@ def bench(
         return
     earlier = Run.read(old) if old else None
     folder = output_folder(output) if output else None
-    for file in (json, junit):
-        if file and file != STDOUT:
-            output_file(file)
+    check_files(json, junit)
     run = suite.run(progress_bar)
     piped = json == STDOUT
     shown = [tables.device_table(run), *(tables.benchmark_table(run, device) for device in run.devices)]

@@ -14,17 +14,16 @@ import typer
 
 from svgf_cl import __version__
 from svgf_cl.cli.console import progress_bar, show
-from svgf_cl.cli.options import Exposure, parse_settings, parse_size
+from svgf_cl.cli.options import STDOUT, Exposure, check_files, parse_measured_size, parse_settings
 from svgf_cl.cli.verdict import leave_with
 from svgf_cl.errors import SvgfError
-from svgf_cl.io.atomic import output_file, output_folder, require
+from svgf_cl.io.atomic import output_folder, require, write_text
 
 if TYPE_CHECKING:
     from svgf_cl.compare.footage import Footage
     from svgf_cl.compare.page import Entry, Page, Scene
     from svgf_cl.compare.rivals import Rival
 
-STDOUT = Path("-")  # as --json has it
 SCENE_FILES = (".gltf", ".glb", ".obj")
 PICTURES = "pictures"  # the rival's name where pictures were made before
 
@@ -130,9 +129,7 @@ def compare(
     limits = Limits.parse(fail_below, fail_above)
     if junit and not limits:
         raise SvgfError("--junit: expected --fail-below or --fail-above beside it, got none")
-    for file in (json, junit):
-        if file and file != STDOUT:
-            output_file(file)
+    check_files(json, junit)
     is_made = reference is None and are_pictures(inputs)
     if is_made or reference is not None:
         refuse_rendering({"--quick": quick, "--size": size, "--frames": frames, "--judged": judged, "--spp": spp})
@@ -228,12 +225,9 @@ def of_scenes(
 ) -> list[Footage]:
     """Shots of scenes; `given`: size, frames, judged and spp, where they are given."""
     from svgf_cl.compare.footage import Choice, opener
-    from svgf_cl.compare.metrics import SSIM_WINDOW
 
     size, frames, judged, spp = given
-    shape = parse_size(size or preset.size)
-    if min(shape) < SSIM_WINDOW:
-        raise SvgfError(f"--size: expected at least {SSIM_WINDOW}x{SSIM_WINDOW} pixels, which SSIM needs, got {size}")
+    shape = parse_measured_size(size or preset.size)
     choice = Choice(shape, frames or preset.frames, judged or preset.judged, spp or preset.spp, jitter)
     open_footage = opener()
     return [open_footage(name, choice) for name in names]
@@ -318,7 +312,7 @@ def write_files(page: Page, folder: Path | None, json: Path | None) -> None:
     """Write the page and all figures."""
     from svgf_cl.compare import page as pages
     from svgf_cl.compare.figures import figure, file_name
-    from svgf_cl.compare.record import results, table, write_text
+    from svgf_cl.compare.record import results, table
     from svgf_cl.io.display import write_image
 
     if json and json != STDOUT:

@@ -10,15 +10,19 @@ from typing import Annotated
 
 import typer
 
+from svgf_cl.compare.metrics import SSIM_WINDOW
 from svgf_cl.errors import SettingsError, SvgfError, shown
 from svgf_cl.filters import FILTERS
 from svgf_cl.filters.filter import Filter
+from svgf_cl.io.atomic import output_file
 from svgf_cl.settings import Domain, Switch, Value, defaults, domains
 
 # A slip of the hand beyond it: of so many pixels squared, one plane of float4 takes 16 GiB.
 MAX_SIDE = 32768
 MAX_FRAMES = 1_000_000  # eleven hours at 24 a second
 MAX_STOPS = 64
+
+STDOUT = Path("-")  # as --json has it
 
 
 def check_exposure(stops: float) -> float:
@@ -58,6 +62,21 @@ def parse_size(text: str) -> tuple[int, int]:
     if max(width, height) > MAX_SIDE:
         raise SvgfError(f"--size: expected at most {MAX_SIDE} pixels a side, got {text}")
     return height, width
+
+
+def parse_measured_size(text: str) -> tuple[int, int]:
+    """Read the size of pictures that are to be measured, which SSIM needs to be of a few pixels; as `parse_size`."""
+    shape = parse_size(text)
+    if min(shape) < SSIM_WINDOW:
+        raise SvgfError(f"--size: expected at least {SSIM_WINDOW}x{SSIM_WINDOW} pixels, which SSIM needs, got {text}")
+    return shape
+
+
+def check_files(*files: Path | None) -> None:
+    """Raise `FileError` where one of the files that are to be written cannot be; standard output can."""
+    for file in files:
+        if file and file != STDOUT:
+            output_file(file)
 
 
 def parse_settings(filter_: str, texts: Iterable[str], option: str = "--set") -> Filter:

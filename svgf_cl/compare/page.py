@@ -15,7 +15,7 @@ from jinja2 import Environment
 from markupsafe import Markup
 
 from svgf_cl.compare.measures import Measure
-from svgf_cl.io.atomic import written_whole
+from svgf_cl.io.atomic import write_text
 
 
 @dataclass(frozen=True)
@@ -135,9 +135,7 @@ Tally = Mapping[str, Mapping[str, Sequence[float]]]  # by rival and key: a value
 
 def write(page: Page, path: Path) -> None:
     """Write the page to a file."""
-    text = render(page)
-    with written_whole(path) as aside:  # what is no text, as names of files may be, as Python would show it
-        aside.write_text(text, encoding="utf-8", errors="backslashreplace", newline="\n")
+    write_text(path, render(page))
 
 
 def render(page: Page) -> str:

@@ -19,7 +19,7 @@ from svgf_cl.compare.measures import MEASURES, Measure
 from svgf_cl.compare.metrics import why_no_flip
 from svgf_cl.compare.page import Entry, Page, Scene
 from svgf_cl.device.tuning import kernels_digest
-from svgf_cl.io.atomic import read_json, written_whole
+from svgf_cl.io.atomic import read_json, write_text
 
 IMAGES = ("picture", "heat", "clip", "profile")  # of an `Entry`
 NEVER = "inf"  # what JSON has no number for; a value that was not measured is null
@@ -70,12 +70,6 @@ def table(page: Page) -> str:
                 found = [plain(entry.values.get(key)) for key in keys]
                 writer.writerow([scene.name, entry.rival, *found, entry.milliseconds])
     return file.getvalue()
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a text, whole or not at all; what is no text, as names of files may be, as Python would show it."""
-    with written_whole(path) as aside:
-        aside.write_text(text, encoding="utf-8", errors="backslashreplace", newline="\n")
 
 
 def part_name(footage_identity: str, rivals: Sequence[str], exposure: float, device: str) -> str:

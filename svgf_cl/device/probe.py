@@ -18,7 +18,7 @@ import pyopencl as cl
 
 from svgf_cl.device import apart
 from svgf_cl.device.programs import OPTIONS
-from svgf_cl.io.atomic import read_json, written_whole
+from svgf_cl.io.atomic import read_json, write_text
 from svgf_cl.io.cache import cache_folder, device_key, keeping
 
 # Part of the key under which answers are remembered: raise it whenever the probe asks for more.
@@ -137,8 +137,8 @@ def _recall() -> dict[str, str]:
 
 
 def _remember(answers: dict[str, str]) -> None:
-    with keeping(), written_whole(cache_folder() / STORE) as aside:
-        aside.write_text(json.dumps(answers, indent=1), encoding="utf-8")
+    with keeping():
+        write_text(cache_folder() / STORE, json.dumps(answers, indent=1))
 
 
 def _main(wanted: str) -> None:

@@ -16,7 +16,7 @@ import pyopencl as cl
 from svgf_cl.device import programs
 from svgf_cl.device.layout import PAGE, ROW_ALIGNMENT, WIDEST_VECTOR
 from svgf_cl.errors import DeviceError, SvgfError, shown
-from svgf_cl.io.atomic import read_json, written_whole
+from svgf_cl.io.atomic import read_json, write_text
 from svgf_cl.io.cache import cache_folder, device_key
 
 STORE = "tunings.json"
@@ -166,6 +166,5 @@ def known_tunings() -> dict[str, Any]:
 
 def write_store(entries: dict[str, Any]) -> Path:
     """Write the file of tunings, whole or not at all."""
-    with written_whole(store_path()) as aside:
-        aside.write_text(json.dumps(entries, indent=1), encoding="utf-8")
+    write_text(store_path(), json.dumps(entries, indent=1))
     return store_path()

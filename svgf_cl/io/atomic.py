@@ -46,6 +46,18 @@ def written_whole(path: Path) -> Iterator[Path]:
         raise
 
 
+def write_text(path: Path, text: str) -> None:
+    """Write a text, whole or not at all; what is no text, as names of files may be, as Python would show it.
+
+    Raises
+    ------
+    FileError
+        As `written_whole`.
+    """
+    with written_whole(path) as aside:
+        aside.write_text(text, encoding="utf-8", errors="backslashreplace", newline="\n")
+
+
 def output_folder(path: Path) -> Path:
     """Return the folder `path` for files that are still to be made, cleared of what killed processes left there.
 

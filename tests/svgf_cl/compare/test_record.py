@@ -15,7 +15,8 @@ import pytest
 from svgf_cl.compare import record
 from svgf_cl.compare.measures import MEASURES
 from svgf_cl.compare.page import Entry, Page, Scene
-from svgf_cl.compare.record import measured, part_name, read_part, results, table, write_part, write_text
+from svgf_cl.compare.record import measured, part_name, read_part, results, table, write_part
+from svgf_cl.io.atomic import write_text
 
 VALUES = {"psnr": math.inf, "ssim": 0.1 + 0.2, "ghost": math.nan, "bias": -math.inf}
 CURVES = {"psnr": [40.0, math.inf], "temporal": [math.nan, 0.25]}

@@ -9,10 +9,9 @@ from typing import Annotated
 import typer
 
 from svgf_cl.cli.console import progress_bar, show, show_times, tracked
-from svgf_cl.cli.options import MAX_FRAMES, Output, Size, parse_size
-from svgf_cl.compare.metrics import SSIM_WINDOW, Metrics, require_ssim
+from svgf_cl.cli.options import MAX_FRAMES, Output, Size, parse_measured_size
+from svgf_cl.compare.metrics import Metrics, require_ssim
 from svgf_cl.denoiser import Denoiser
-from svgf_cl.errors import SvgfError
 from svgf_cl_tracer.cli.scenes import require_tracer
 
 
@@ -40,10 +39,7 @@ def demo(
     from svgf_cl_tracer.demo import SETTINGS, Demo
     from svgf_cl_tracer.references import chunks
 
-    shape = parse_size(size)
-    if min(shape) < SSIM_WINDOW:
-        raise SvgfError(f"--size: expected at least {SSIM_WINDOW}x{SSIM_WINDOW} pixels, which SSIM needs, got {size}")
-    run = Demo(output, frames, shape, reference_spp)
+    run = Demo(output, frames, parse_measured_size(size), reference_spp)
     run.check_leftovers()
     denoiser = Denoiser(run.shape, settings=SETTINGS)
     print(f"device: {denoiser.queue.device.name.strip()} ({denoiser.queue.device.platform.name})")
