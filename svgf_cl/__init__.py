@@ -1,5 +1,6 @@
 """svgf_cl: a denoiser for path-traced animation that runs on any OpenCL device."""
 
+from svgf_cl.camera import Camera, motion_from_cameras
 from svgf_cl.check import check_frame, check_sequence
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.device.tuning import Tuning
@@ -11,6 +12,7 @@ from svgf_cl.frame import Frame
 __all__ = [
     "Accumulation",
     "ArgumentError",
+    "Camera",
     "Denoiser",
     "DeviceError",
     "Eaw",
@@ -27,5 +29,6 @@ __all__ = [
     "Tuning",
     "check_frame",
     "check_sequence",
+    "motion_from_cameras",
 ]
 __version__ = "0.1.0"

@@ -1,0 +1,373 @@
+"""`Camera`, and the motion of what stands still between the cameras of two frames.
+
+Everything is computed in double precision: a camera may stand far from the origin, and a motion is a small difference
+of two positions.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from svgf_cl.errors import ArgumentError, shown
+
+Array = npt.NDArray[np.float64]
+FovAxis = Literal["x", "y", "smaller", "larger"]
+Axes = Literal["opencv", "opengl", "mitsuba", "renderman"]
+
+# Which way the x, y and z of a camera's own space point: 1 for right, down and forward, -1 for the opposite.
+AXES: dict[str, tuple[int, int, int]] = {
+    "opencv": (1, 1, 1),
+    "opengl": (1, -1, -1),  # Blender, glTF and USD too
+    "mitsuba": (-1, -1, 1),
+    "renderman": (1, -1, 1),  # pbrt and OpenEXR's header too
+}
+RIGID = 1e-3  # how far the product of a rotation and its transpose may be from the identity
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Camera:
+    """A pinhole or an orthographic camera: where it sees a point of the world.
+
+    Its view axes are x to the right, y down, and z forward, which is the depth of docs/conventions.md. It sees the view
+    point (x, y, z) at ``(focal[0] * x / z + center[0], focal[1] * y / z + center[1])``; an orthographic camera does not
+    divide by z. Pixel centres are at whole coordinates, (0, 0) in the upper left pixel, and pixels are those of the
+    image as a whole: of the display window of an OpenEXR file, wherever its data window is.
+
+    Parameters
+    ----------
+    world_to_view : (4, 4) array
+        A rotation and a translation, with or without a reflection, that turn a column (x, y, z, 1) of world space into
+        view space.
+    focal : (float, float)
+        Focal length in pixels, along x and y, > 0. Of an orthographic camera: pixels per scene unit.
+    center : (float, float)
+        Where the optical axis meets the image, in pixels from the centre of the upper left one.
+    orthographic : bool
+        Whether all rays are parallel.
+
+    Raises
+    ------
+    ArgumentError
+        `world_to_view` scales, shears or has numbers that are not finite, or `focal` or `center` is out of range.
+    """
+
+    world_to_view: Array
+    focal: tuple[float, float]
+    center: tuple[float, float]
+    orthographic: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "world_to_view", _rigid("Camera(world_to_view)", self.world_to_view))
+        for name, expected, lowest in (("focal", "> 0", 0.0), ("center", "that are finite", -math.inf)):
+            pair = np.asarray(getattr(self, name), np.float64)
+            if pair.shape != (2,) or not np.all((pair > lowest) & (pair < math.inf)):
+                raise ArgumentError(f"Camera({name})", f"two numbers {expected}", shown(getattr(self, name)))
+            object.__setattr__(self, name, (float(pair[0]), float(pair[1])))
+
+    @classmethod
+    def from_fov(
+        cls,
+        camera_to_world: npt.ArrayLike,
+        fov_degrees: float,
+        shape: tuple[int, int],
+        fov_axis: FovAxis = "x",
+        axes: Axes = "opengl",
+    ) -> Camera:
+        """Make a camera in perspective from its place in the world and its field of view; pixels are square.
+
+        Parameters
+        ----------
+        camera_to_world : (4, 4) array
+            Turns a column (x, y, z, 1) of the camera's space into world space, without scale.
+        fov_degrees : float
+            The angle between the image's opposite edges, 0 < `fov_degrees` < 180.
+        shape : (int, int)
+            (height, width) of the image in pixels.
+        fov_axis : {"x", "y", "smaller", "larger"}
+            Along which of the image's sides the field of view is measured.
+        axes : {"opengl", "mitsuba", "renderman", "opencv"}
+            Which way the camera's x, y and z point in the image: right, up, backward (OpenGL, Blender, glTF, USD);
+            left, up, forward (Mitsuba); right, up, forward (RenderMan, pbrt); right, down, forward (OpenCV).
+
+        Raises
+        ------
+        ArgumentError
+            An argument is out of range.
+        """
+        height, width = _checked_shape("Camera.from_fov(shape)", shape)
+        sides = {"x": width, "y": height, "smaller": min(shape), "larger": max(shape)}
+        if fov_axis not in sides:
+            raise ArgumentError("Camera.from_fov(fov_axis)", f"one of {', '.join(sides)}", shown(fov_axis))
+        if not 0.0 < fov_degrees < 180.0:
+            raise ArgumentError("Camera.from_fov(fov_degrees)", "an angle in (0, 180) degrees", shown(fov_degrees))
+        world_to_camera = _inverse(_rigid("Camera.from_fov(camera_to_world)", camera_to_world))
+        focal = sides[fov_axis] / (2.0 * math.tan(math.radians(fov_degrees) / 2.0))
+        return cls(
+            world_to_view=view_axes("Camera.from_fov(axes)", axes) @ world_to_camera,
+            focal=(focal, focal),
+            center=((width - 1) / 2.0, (height - 1) / 2.0),
+        )
+
+    @classmethod
+    def from_matrices(
+        cls, world_to_camera: npt.ArrayLike, world_to_ndc: npt.ArrayLike, shape: tuple[int, int]
+    ) -> Camera:
+        """Make a camera from the attributes ``worldToCamera`` and ``worldToNDC`` of an OpenEXR file.
+
+        The matrices are as in the file: a row (x, y, z, 1) of world space times one is a point in the camera's space or
+        in normalised device coordinates (NDC), which are yet to be divided by w. The camera's x points to the right or
+        left, its y up. Renderers differ in the rest, and the numbers tell which way it is:
+
+        - A camera in perspective looks along the z for which w is positive.
+        - NDC count from 0 to 1 across the display window if the optical axis is nearer to its (0.5, 0.5) than to
+          (0, 0) (OpenEXR's definition; RenderMan), else from -1 to 1 (Arnold); y points down or up.
+        - NDC that have one unit along both sides of an image that is not square span its smaller side (pbrt).
+        - Matrices may be transposed (pbrt).
+
+        Parameters
+        ----------
+        world_to_camera, world_to_ndc : (4, 4) array
+        shape : (int, int)
+            (height, width) of the display window in pixels.
+
+        Raises
+        ------
+        ArgumentError
+            The matrices are not those of one camera in perspective or of an orthographic one, or its optical axis is
+            too far from the middle of the image to tell how NDC count.
+
+        References
+        ----------
+        https://openexr.com/en/latest/StandardAttributes.html#position-and-orientation
+        """
+        height, width = _checked_shape("Camera.from_matrices(shape)", shape)
+        matrix, projection = _consistent(world_to_camera, world_to_ndc)
+        orthographic = abs(projection[2, 3]) < 0.5
+        forward = 1.0 if orthographic else math.copysign(1.0, projection[2, 3])
+        scale = projection[[0, 1], [0, 1]]
+        axis = projection[3, :2] if orthographic else forward * projection[2, :2]
+        from_zero = np.abs(axis - 0.5) < 0.25
+        if not (from_zero.all() or (np.abs(axis) < 0.25).all()):
+            expected = "an optical axis near (0, 0) or (0.5, 0.5)"
+            raise ArgumentError("Camera.from_matrices(world_to_ndc)", expected, shown(tuple(axis.tolist())))
+        sides = np.array((width, height), np.float64)
+        is_uniform = math.isclose(abs(scale[0]), abs(scale[1]), rel_tol=1e-4)
+        spans = np.full(2, sides.min()) if is_uniform else sides
+        per_unit = spans if from_zero.all() else spans / 2.0
+        # From the middle of the image on, to the right and down.
+        from_middle = (axis - (0.5 if from_zero.all() else 0.0)) * per_unit * (1.0, -np.sign(scale[1]))
+        flips = np.diag((np.sign(scale[0]), -1.0, forward, 1.0))
+        focal_x, focal_y = np.abs(scale) * per_unit
+        center_x, center_y = (sides - 1.0) / 2.0 + from_middle
+        return cls(
+            world_to_view=flips @ matrix.T,
+            focal=(focal_x, focal_y),
+            center=(center_x, center_y),
+            orthographic=orthographic,
+        )
+
+    def to_view(self, points: npt.ArrayLike) -> Array:
+        """Turn points (..., 3) of world space into view space."""
+        view: Array = np.asarray(points, np.float64) @ self.world_to_view[:3, :3].T + self.world_to_view[:3, 3]
+        return view
+
+    def to_world(self, view: npt.ArrayLike) -> Array:
+        """Turn points (..., 3) of view space into world space."""
+        inverse = _inverse(self.world_to_view)
+        points: Array = np.asarray(view, np.float64) @ inverse[:3, :3].T + inverse[:3, 3]
+        return points
+
+    def project(self, points: npt.ArrayLike) -> tuple[Array, Array]:
+        """Find where the camera sees points (..., 3) of the world: pixels (..., 2) (x, y), and depth (...).
+
+        Pixels are NaN where the depth is not above 0: the point is behind the camera.
+        """
+        view = self.to_view(points)
+        return self._pixels(view), view[..., 2]
+
+    def unproject(self, depth: npt.ArrayLike) -> Array:
+        """Find the points (H, W, 3) of the world at a depth (H, W) in pixel centres; NaN where it is not finite."""
+        depth = np.asarray(depth, np.float64)
+        depth = np.where(np.isfinite(depth), depth, math.nan)[..., None]
+        rays = self.rays((depth.shape[0], depth.shape[1]))
+        return self.to_world(np.concatenate([rays[..., :2] * (1.0 if self.orthographic else depth), depth], axis=-1))
+
+    def depth_at(self, points: npt.ArrayLike) -> Array:
+        """Compute the depth (...) of points (..., 3) of the world."""
+        return self.to_view(points)[..., 2]
+
+    def depth_of(self, distance: npt.ArrayLike) -> Array:
+        """Turn distances (H, W) along the rays through pixel centres into depths (H, W)."""
+        distance = np.asarray(distance, np.float64)
+        if self.orthographic:
+            return distance
+        rays = self.rays((distance.shape[0], distance.shape[1]))
+        depth: Array = distance / np.linalg.norm(rays, axis=-1)
+        return depth
+
+    def rays(self, shape: tuple[int, int]) -> Array:
+        """Find the points (H, W, 3) of view space that have depth 1 at the pixel centres of a (height, width) image."""
+        y, x = np.indices(shape, np.float64)
+        (focal_x, focal_y), (center_x, center_y) = self.focal, self.center
+        return np.stack([(x - center_x) / focal_x, (y - center_y) / focal_y, np.ones(shape)], axis=-1)
+
+    def _pixels(self, view: Array) -> Array:
+        """Where points (..., 3) of view space are seen, (..., 2); NaN behind the camera."""
+        depth = np.where(view[..., 2:] > 0.0, view[..., 2:], math.nan)
+        pixels: Array = view[..., :2] * self.focal / (np.sign(depth) if self.orthographic else depth) + self.center
+        return pixels
+
+
+def motion_from_cameras(
+    camera: Camera, previous: Camera, *, depth: npt.ArrayLike | None = None, position: npt.ArrayLike | None = None
+) -> npt.NDArray[np.float32]:
+    """Compute the motion of geometry that stands still, from the cameras of a frame and of the one before.
+
+    Give the camera of the next frame as `previous` for the motion to the next frame.
+
+    Parameters
+    ----------
+    camera, previous : Camera
+        Those of this frame and of the previous one, without sub-pixel jitter.
+    depth : (H, W) array, optional
+        Depth along the camera's axis, at pixel centres. Where it is not finite or not above 0, nothing was hit.
+    position : (H, W, 3) array, optional
+        World-space positions, which may lie anywhere in their pixels: the jitter of a frame is not in its motion. Where
+        one is not finite, nothing was hit. Beside `depth`, which then only says where nothing was hit.
+
+    Returns
+    -------
+    (H, W, 3) float32
+        Previous minus current position in pixels, x and y, and previous minus current depth. Where nothing was hit, it
+        is the motion of a point infinitely far away: that of the rotation alone, and 0 in the third component; all 0
+        for an orthographic camera. NaN, a pixel without history, where the previous camera had the point behind it.
+
+    Raises
+    ------
+    ArgumentError
+        Neither `depth` nor `position` is given, or one has another shape.
+
+    Examples
+    --------
+    >>> camera = Camera.from_fov(camera_to_world, 40.0, depth.shape, "y", "opengl")
+    >>> previous = Camera.from_fov(previous_camera_to_world, 40.0, depth.shape, "y", "opengl")
+    >>> motion = motion_from_cameras(camera, previous, depth=depth)
+    >>> frame = Frame(color=color, normal=normal, depth=depth, motion=motion)
+    """
+    if position is not None:
+        points = _image("position", position, (3,))
+        missed = ~np.isfinite(points).all(axis=-1)
+    elif depth is not None:
+        points = camera.unproject(_image("depth", depth, ()))
+        missed = np.zeros(points.shape[:2], bool)
+    else:
+        raise ArgumentError("motion_from_cameras(depth)", "an array, unless position is one", "nothing")
+    if depth is not None:
+        plane = _image("depth", depth, (), points.shape[:2])
+        missed |= ~(np.isfinite(plane) & (plane > 0.0))
+    now, depth_now = camera.project(points)
+    then, depth_then = previous.project(points)
+    motion = np.concatenate([then - now, (depth_then - depth_now)[..., None]], axis=-1)
+    motion[np.isnan(motion).any(axis=-1)] = math.nan
+    motion[missed] = _motion_at_infinity(camera, previous, points.shape[:2])[missed]
+    return motion.astype(np.float32)
+
+
+def _motion_at_infinity(camera: Camera, previous: Camera, shape: tuple[int, int]) -> Array:
+    """The motion (H, W, 3) of points infinitely far away, in the direction of each pixel's centre."""
+    motion = np.zeros((*shape, 3))
+    if camera.orthographic or previous.orthographic:  # all rays go one way: the background has no place in the image
+        return motion
+    rotation = previous.world_to_view[:3, :3] @ np.linalg.inv(camera.world_to_view[:3, :3])
+    rays = camera.rays(shape)
+    motion[..., :2] = previous._pixels(rays @ rotation.T) - camera._pixels(rays)
+    motion[np.isnan(motion).any(axis=-1)] = math.nan
+    return motion
+
+
+def view_axes(argument: str, axes: str) -> Array:
+    """The (4, 4) matrix from a camera's space whose `axes` have this name to view space."""
+    if axes not in AXES:
+        raise ArgumentError(argument, f"one of {', '.join(AXES)}", shown(axes))
+    return np.diag((*AXES[axes], 1.0))
+
+
+def _image(name: str, value: npt.ArrayLike, rest: tuple[int, ...], shape: tuple[int, ...] | None = None) -> Array:
+    """An argument of `motion_from_cameras` as an array of shape (H, W, *rest), or (*shape, *rest) if that is given."""
+    array = np.asarray(value, np.float64)
+    fits = array.ndim == 2 + len(rest) and array.shape[2:] == rest and shape in (None, array.shape[:2])
+    if not fits:
+        expected = ", ".join(map(str, (*(shape or ("H", "W")), *rest)))
+        raise ArgumentError(f"motion_from_cameras({name})", f"shape ({expected})", f"shape {array.shape}")
+    return array
+
+
+def _checked_shape(argument: str, shape: tuple[int, int]) -> tuple[int, int]:
+    """(height, width) if both are there and above 0."""
+    if len(shape) != 2 or min(shape) < 1:
+        raise ArgumentError(argument, "(height, width) in pixels", shown(shape))
+    return shape
+
+
+def _is_rigid(matrix: Array) -> bool:
+    """Whether `matrix` (4, 4) only turns, moves and reflects columns."""
+    rotation = matrix[:3, :3]
+    is_affine = np.isfinite(matrix).all() and np.allclose(matrix[3], (0.0, 0.0, 0.0, 1.0), rtol=0.0, atol=1e-5)
+    return bool(is_affine and np.allclose(rotation @ rotation.T, np.eye(3), rtol=0.0, atol=RIGID))
+
+
+def _rigid(argument: str, value: npt.ArrayLike) -> Array:
+    """`value` as a matrix of double precision if it only turns, moves and reflects columns."""
+    matrix = np.array(value, np.float64)
+    if matrix.shape != (4, 4):
+        raise ArgumentError(argument, "shape (4, 4)", f"shape {matrix.shape}")
+    if not _is_rigid(matrix):
+        expected = "a rotation and a translation without scale, for columns (x, y, z, 1)"
+        raise ArgumentError(argument, expected, shown(matrix.tolist()))
+    matrix[3] = (0.0, 0.0, 0.0, 1.0)
+    matrix.flags.writeable = False
+    return matrix
+
+
+def _inverse(rigid: Array) -> Array:
+    """The inverse of a matrix that turns and moves."""
+    inverse = np.eye(4)
+    inverse[:3, :3] = np.linalg.inv(rigid[:3, :3])
+    inverse[:3, 3] = -inverse[:3, :3] @ rigid[:3, 3]
+    return inverse
+
+
+def _consistent(world_to_camera: npt.ArrayLike, world_to_ndc: npt.ArrayLike) -> tuple[Array, Array]:
+    """World to camera, and camera to NDC, for rows (x, y, z, 1), however the two matrices lay in the file."""
+    camera, ndc = np.array(world_to_camera, np.float64), np.array(world_to_ndc, np.float64)
+    for name, matrix in (("world_to_camera", camera), ("world_to_ndc", ndc)):
+        if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
+            raise ArgumentError(f"Camera.from_matrices({name})", "4 x 4 finite numbers", shown(matrix.tolist()))
+    readings = [(m, _inverse(m.T).T @ n) for m, n in ((camera, ndc), (camera.T, ndc.T)) if _is_rigid(m.T)]
+    if not readings:
+        expected = "a rotation and a translation without scale"
+        raise ArgumentError("Camera.from_matrices(world_to_camera)", expected, shown(camera.tolist()))
+    # A camera that stands unturned at the origin has the same matrix either way.
+    matrix, projection = min(readings, key=lambda reading: _deviation(reading[1]))
+    if not _deviation(projection) < RIGID:
+        expected = "the projection of a camera in perspective or an orthographic one, that fits world_to_camera"
+        raise ArgumentError("Camera.from_matrices(world_to_ndc)", expected, shown(ndc.tolist()))
+    return matrix, projection
+
+
+def _deviation(projection: Array) -> float:
+    """How far a matrix from a camera's space to NDC, for rows, is from one where x is from x, y from y, w from z or 1.
+
+    It does not look at the last row, where matrices of single precision lose digits far from the origin.
+    """
+    scale = np.abs(projection[[0, 1], [0, 1]])
+    if not scale.min() > 0.0:
+        return math.inf
+    skew = np.abs(projection[[0, 1], [1, 0]]) / scale.min()
+    w_of_z = abs(projection[2, 3])
+    return float(max(*skew, *np.abs(projection[:2, 3]), min(w_of_z, abs(w_of_z - 1.0))))
