@@ -7,15 +7,15 @@ of two positions.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from svgf_cl.errors import ArgumentError, shown
+from svgf_cl.matrices import Array, inverse, projection_of, rigid
 
-Array = npt.NDArray[np.float64]
 FovAxis = Literal["x", "y", "smaller", "larger"]
 Axes = Literal["opencv", "opengl", "mitsuba", "renderman"]
 
@@ -26,7 +26,6 @@ AXES: dict[str, tuple[int, int, int]] = {
     "mitsuba": (-1, -1, 1),
     "renderman": (1, -1, 1),  # pbrt and OpenEXR's header too
 }
-RIGID = 1e-3  # how far the product of a rotation and its transpose may be from the identity
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -62,7 +61,7 @@ class Camera:
     orthographic: bool = False
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "world_to_view", _rigid("Camera(world_to_view)", self.world_to_view))
+        object.__setattr__(self, "world_to_view", rigid("Camera(world_to_view)", self.world_to_view))
         for name, expected, lowest in (("focal", "> 0", 0.0), ("center", "that are finite", -math.inf)):
             pair = np.asarray(getattr(self, name), np.float64)
             if pair.shape != (2,) or not np.all((pair > lowest) & (pair < math.inf)):
@@ -105,7 +104,7 @@ class Camera:
             raise ArgumentError("Camera.from_fov(fov_axis)", f"one of {', '.join(sides)}", shown(fov_axis))
         if not 0.0 < fov_degrees < 180.0:
             raise ArgumentError("Camera.from_fov(fov_degrees)", "an angle in (0, 180) degrees", shown(fov_degrees))
-        world_to_camera = _inverse(_rigid("Camera.from_fov(camera_to_world)", camera_to_world))
+        world_to_camera = inverse(rigid("Camera.from_fov(camera_to_world)", camera_to_world))
         focal = sides[fov_axis] / (2.0 * math.tan(math.radians(fov_degrees) / 2.0))
         return cls(
             world_to_view=view_axes("Camera.from_fov(axes)", axes) @ world_to_camera,
@@ -145,31 +144,12 @@ class Camera:
         ----------
         https://openexr.com/en/latest/StandardAttributes.html#position-and-orientation
         """
-        height, width = _checked_shape("Camera.from_matrices(shape)", shape)
-        matrix, projection = _consistent(world_to_camera, world_to_ndc)
-        orthographic = abs(projection[2, 3]) < 0.5
-        forward = 1.0 if orthographic else math.copysign(1.0, projection[2, 3])
-        scale = projection[[0, 1], [0, 1]]
-        axis = projection[3, :2] if orthographic else forward * projection[2, :2]
-        from_zero = np.abs(axis - 0.5) < 0.25
-        if not (from_zero.all() or (np.abs(axis) < 0.25).all()):
-            expected = "an optical axis near (0, 0) or (0.5, 0.5)"
-            raise ArgumentError("Camera.from_matrices(world_to_ndc)", expected, shown(tuple(axis.tolist())))
-        sides = np.array((width, height), np.float64)
-        is_uniform = math.isclose(abs(scale[0]), abs(scale[1]), rel_tol=1e-4)
-        spans = np.full(2, sides.min()) if is_uniform else sides
-        per_unit = spans if from_zero.all() else spans / 2.0
-        # From the middle of the image on, to the right and down.
-        from_middle = (axis - (0.5 if from_zero.all() else 0.0)) * per_unit * (1.0, -np.sign(scale[1]))
-        flips = np.diag((np.sign(scale[0]), -1.0, forward, 1.0))
-        focal_x, focal_y = np.abs(scale) * per_unit
-        center_x, center_y = (sides - 1.0) / 2.0 + from_middle
-        return cls(
-            world_to_view=flips @ matrix.T,
-            focal=(focal_x, focal_y),
-            center=(center_x, center_y),
-            orthographic=orthographic,
-        )
+        _checked_shape("Camera.from_matrices(shape)", shape)
+        return cls(**projection_of(world_to_camera, world_to_ndc, shape)._asdict())
+
+    def cropped(self, x: int, y: int) -> Camera:
+        """The same camera for a part of its image, a data window, whose upper left pixel is (`x`, `y`) of the whole."""
+        return replace(self, center=(self.center[0] - x, self.center[1] - y))
 
     def to_view(self, points: npt.ArrayLike) -> Array:
         """Turn points (..., 3) of world space into view space."""
@@ -178,8 +158,8 @@ class Camera:
 
     def to_world(self, view: npt.ArrayLike) -> Array:
         """Turn points (..., 3) of view space into world space."""
-        inverse = _inverse(self.world_to_view)
-        points: Array = np.asarray(view, np.float64) @ inverse[:3, :3].T + inverse[:3, 3]
+        view_to_world = inverse(self.world_to_view)
+        points: Array = np.asarray(view, np.float64) @ view_to_world[:3, :3].T + view_to_world[:3, 3]
         return points
 
     def project(self, points: npt.ArrayLike) -> tuple[Array, Array]:
@@ -312,62 +292,3 @@ def _checked_shape(argument: str, shape: tuple[int, int]) -> tuple[int, int]:
     if len(shape) != 2 or min(shape) < 1:
         raise ArgumentError(argument, "(height, width) in pixels", shown(shape))
     return shape
-
-
-def _is_rigid(matrix: Array) -> bool:
-    """Whether `matrix` (4, 4) only turns, moves and reflects columns."""
-    rotation = matrix[:3, :3]
-    is_affine = np.isfinite(matrix).all() and np.allclose(matrix[3], (0.0, 0.0, 0.0, 1.0), rtol=0.0, atol=1e-5)
-    return bool(is_affine and np.allclose(rotation @ rotation.T, np.eye(3), rtol=0.0, atol=RIGID))
-
-
-def _rigid(argument: str, value: npt.ArrayLike) -> Array:
-    """`value` as a matrix of double precision if it only turns, moves and reflects columns."""
-    matrix = np.array(value, np.float64)
-    if matrix.shape != (4, 4):
-        raise ArgumentError(argument, "shape (4, 4)", f"shape {matrix.shape}")
-    if not _is_rigid(matrix):
-        expected = "a rotation and a translation without scale, for columns (x, y, z, 1)"
-        raise ArgumentError(argument, expected, shown(matrix.tolist()))
-    matrix[3] = (0.0, 0.0, 0.0, 1.0)
-    matrix.flags.writeable = False
-    return matrix
-
-
-def _inverse(rigid: Array) -> Array:
-    """The inverse of a matrix that turns and moves."""
-    inverse = np.eye(4)
-    inverse[:3, :3] = np.linalg.inv(rigid[:3, :3])
-    inverse[:3, 3] = -inverse[:3, :3] @ rigid[:3, 3]
-    return inverse
-
-
-def _consistent(world_to_camera: npt.ArrayLike, world_to_ndc: npt.ArrayLike) -> tuple[Array, Array]:
-    """World to camera, and camera to NDC, for rows (x, y, z, 1), however the two matrices lay in the file."""
-    camera, ndc = np.array(world_to_camera, np.float64), np.array(world_to_ndc, np.float64)
-    for name, matrix in (("world_to_camera", camera), ("world_to_ndc", ndc)):
-        if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
-            raise ArgumentError(f"Camera.from_matrices({name})", "4 x 4 finite numbers", shown(matrix.tolist()))
-    readings = [(m, _inverse(m.T).T @ n) for m, n in ((camera, ndc), (camera.T, ndc.T)) if _is_rigid(m.T)]
-    if not readings:
-        expected = "a rotation and a translation without scale"
-        raise ArgumentError("Camera.from_matrices(world_to_camera)", expected, shown(camera.tolist()))
-    # A camera that stands unturned at the origin has the same matrix either way.
-    matrix, projection = min(readings, key=lambda reading: _deviation(reading[1]))
-    if not _deviation(projection) < RIGID:
-        expected = "the projection of a camera in perspective or an orthographic one, that fits world_to_camera"
-        raise ArgumentError("Camera.from_matrices(world_to_ndc)", expected, shown(ndc.tolist()))
-    return matrix, projection
-
-
-def _deviation(projection: Array) -> float:
-    """How far a matrix from a camera's space to NDC, for rows, is from one where x is from x, y from y, w from z or 1.
-
-    It does not look at the last row, where matrices of single precision lose digits far from the origin.
-    """
-    scale = np.abs(projection[[0, 1], [0, 1]])
-    if not scale.min() > 0.0:
-        return math.inf
-    skew = np.abs(projection[[0, 1], [1, 0]]) / scale.min()
-    w_of_z = abs(projection[2, 3])
-    return float(max(*skew, *np.abs(projection[:2, 3]), min(w_of_z, abs(w_of_z - 1.0))))

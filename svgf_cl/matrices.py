@@ -1,0 +1,117 @@
+"""Matrices of cameras: which are rigid, their inverses, and what those in the header of an OpenEXR file say."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from svgf_cl.errors import ArgumentError, shown
+
+Array = npt.NDArray[np.float64]
+
+RIGID = 1e-3  # how far the product of a rotation and its transpose may be from the identity
+CENTRAL = 0.25  # how far the optical axis of a header's camera may be from the middle of the image, in NDC
+
+
+class Projection(NamedTuple):
+    """What `svgf_cl.camera.Camera` is made of."""
+
+    world_to_view: Array
+    focal: tuple[float, float]
+    center: tuple[float, float]
+    orthographic: bool
+
+
+def rigid(argument: str, value: npt.ArrayLike) -> Array:
+    """`value` as a matrix of double precision if it only turns, moves and reflects columns."""
+    matrix = np.array(value, np.float64)
+    if matrix.shape != (4, 4):
+        raise ArgumentError(argument, "shape (4, 4)", f"shape {matrix.shape}")
+    if not _is_rigid(matrix):
+        expected = "a rotation and a translation without scale, for columns (x, y, z, 1)"
+        raise ArgumentError(argument, expected, shown(matrix.tolist()))
+    matrix[3] = (0.0, 0.0, 0.0, 1.0)
+    matrix.flags.writeable = False
+    return matrix
+
+
+def inverse(matrix: Array) -> Array:
+    """The inverse of a matrix that turns and moves."""
+    result = np.eye(4)
+    result[:3, :3] = np.linalg.inv(matrix[:3, :3])
+    result[:3, 3] = -result[:3, :3] @ matrix[:3, 3]
+    return result
+
+
+def projection_of(world_to_camera: npt.ArrayLike, world_to_ndc: npt.ArrayLike, shape: tuple[int, int]) -> Projection:
+    """Understand the matrices of a header as `svgf_cl.camera.Camera.from_matrices` says.
+
+    Raises
+    ------
+    ArgumentError
+        They are not those of one camera.
+    """
+    matrix, projection = _consistent(world_to_camera, world_to_ndc)
+    orthographic = bool(abs(projection[2, 3]) < 0.5)
+    forward = 1.0 if orthographic else math.copysign(1.0, projection[2, 3])
+    scale, signs = np.abs(projection[[0, 1], [0, 1]]), np.sign(projection[[0, 1], [0, 1]])
+    axis = projection[3, :2] if orthographic else forward * projection[2, :2]
+    origin = _origin(axis)
+    sides = np.array((shape[1], shape[0]), np.float64)
+    is_square = math.isclose(*scale, rel_tol=1e-4)
+    per_unit = (sides.min() if is_square else sides) * (0.5 if origin == 0.0 else 1.0)
+    focal = scale * per_unit
+    # Down in the image is up or down in NDC, and the opposite of the camera's y.
+    center = (sides - 1.0) / 2.0 + (axis - origin) * per_unit * (1.0, -signs[1])
+    flips = np.diag((signs[0], -1.0, forward, 1.0))
+    return Projection(flips @ matrix.T, (focal[0], focal[1]), (center[0], center[1]), orthographic)
+
+
+def _origin(axis: Array) -> float:
+    """Which NDC the middle of the image has, where the optical axis is at `axis` (x, y)."""
+    for origin in (0.0, 0.5):
+        if np.all(np.abs(axis - origin) < CENTRAL):
+            return origin
+    expected = "an optical axis near (0, 0) or (0.5, 0.5)"
+    raise ArgumentError("Camera.from_matrices(world_to_ndc)", expected, shown(tuple(axis.tolist())))
+
+
+def _is_rigid(matrix: Array) -> bool:
+    """Whether `matrix` (4, 4) only turns, moves and reflects columns."""
+    rotation = matrix[:3, :3]
+    is_affine = np.isfinite(matrix).all() and np.allclose(matrix[3], (0.0, 0.0, 0.0, 1.0), rtol=0.0, atol=1e-5)
+    return bool(is_affine and np.allclose(rotation @ rotation.T, np.eye(3), rtol=0.0, atol=RIGID))
+
+
+def _consistent(world_to_camera: npt.ArrayLike, world_to_ndc: npt.ArrayLike) -> tuple[Array, Array]:
+    """World to camera, and camera to NDC, for rows (x, y, z, 1), however the two matrices lay in the file."""
+    camera, ndc = np.array(world_to_camera, np.float64), np.array(world_to_ndc, np.float64)
+    for name, matrix in (("world_to_camera", camera), ("world_to_ndc", ndc)):
+        if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
+            raise ArgumentError(f"Camera.from_matrices({name})", "4 x 4 finite numbers", shown(matrix.tolist()))
+    readings = [(m, inverse(m.T).T @ n) for m, n in ((camera, ndc), (camera.T, ndc.T)) if _is_rigid(m.T)]
+    if not readings:
+        expected = "a rotation and a translation without scale"
+        raise ArgumentError("Camera.from_matrices(world_to_camera)", expected, shown(camera.tolist()))
+    # A camera that stands unturned at the origin has the same matrix either way.
+    matrix, projection = min(readings, key=lambda reading: _deviation(reading[1]))
+    if not _deviation(projection) < RIGID:
+        expected = "the projection of a camera in perspective or an orthographic one, that fits world_to_camera"
+        raise ArgumentError("Camera.from_matrices(world_to_ndc)", expected, shown(ndc.tolist()))
+    return matrix, projection
+
+
+def _deviation(projection: Array) -> float:
+    """How far a matrix from a camera's space to NDC, for rows, is from one where x is from x, y from y, w from z or 1.
+
+    It does not look at the last row, where matrices of single precision lose digits far from the origin.
+    """
+    scale = np.abs(projection[[0, 1], [0, 1]])
+    if not scale.min() > 0.0:
+        return math.inf
+    skew = np.abs(projection[[0, 1], [1, 0]]) / scale.min()
+    w_of_z = abs(projection[2, 3])
+    return float(max(*skew, *np.abs(projection[:2, 3]), min(w_of_z, abs(w_of_z - 1.0))))
