@@ -8,15 +8,16 @@ from typing import Annotated
 import typer
 
 from svgf_cl.check import Inspection
+from svgf_cl.cli import reading
 from svgf_cl.cli.console import show, tracked
 from svgf_cl.cli.options import AllowGaps, Frames
-from svgf_cl.cli.remarks import reading
+from svgf_cl.cli.remarks import described
 from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Frame
 from svgf_cl.io.atomic import output_file
 from svgf_cl.io.display import write_image
-from svgf_cl.io.sequence import after_gaps, find_frames
-from svgf_cl.io.shot import read_shot, shared_window
+from svgf_cl.io.sequence import find_frames
+from svgf_cl.io.shot import Shot
 
 
 def check(
@@ -26,6 +27,13 @@ def check(
         typer.Option("-o", "--output", metavar="FILE", help="Also draw the fields of the last frame into a PNG file."),
     ] = None,
     allow_gaps: AllowGaps = False,
+    format_: reading.Format = None,
+    maps: reading.Maps = [],  # noqa: B006  # never changed; typer wants the default spelled here
+    view_layer: reading.ViewLayer = None,
+    cameras: reading.Cameras = None,
+    still_camera: reading.StillCamera = False,
+    motion_scale: reading.MotionScale = 1.0,
+    motion_flip: reading.MotionFlip = "",
 ) -> None:
     """Look for what is wrong with the frames of a shot, before they are denoised.
 
@@ -43,20 +51,21 @@ def check(
     if output:
         output_file(output)
     sources = find_frames(frames, allow_gaps=allow_gaps)
-    inspection, cuts = Inspection(), after_gaps(sources)
+    how = reading.read_as(format_, maps, view_layer, cameras, still_camera, motion_scale, motion_flip)
+    shot, inspection = Shot(sources, how), Inspection()
     last: list[Frame] = []
-    shot = tracked(read_shot(sources, shared_window(sources)), len(sources), "checking")
-    for path, (image, frame) in zip(sources, shot, strict=True):
+    for index in tracked(range(len(shot)), len(shot), "checking"):
+        source = shot.read(index)
         if not last:
-            print(reading(image.planes))
-        if path in cuts:
+            print(described(shot.reading, source))
+        if index in shot.cuts:
             inspection.cut()
-        inspection.add(frame)
-        last = [*last[-1:], frame]
+        inspection.add(source.frame)
+        last = [*last[-1:], source.frame]
     report = inspection.report()
     if output:
         draw(output, last)
-    title = f"{len(sources)} frames: {len(report.findings)} findings, {len(report.passed)} checks passed"
+    title = f"{len(shot)} frames: {len(report.findings)} findings, {len(report.passed)} checks passed"
     if report.findings:
         rows = [(f.field, f.severity, f.what, f.measured, f.expected, f.cure) for f in report.findings]
         show(title, ("field", "severity", "found", "measured", "expected", "to do"), rows, words=6)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Collection
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +12,10 @@ from svgf_cl.check.values import SEEN
 from svgf_cl.check.view import FAR, has_normal, in_range
 from svgf_cl.errors import FileError
 from svgf_cl.frame import CARRIED, Frame
-from svgf_cl.io.frames import CHANNEL_NAMES, OPTIONAL, needed
 from svgf_cl.io.look_alikes import advice, grouped
+from svgf_cl.io.readers.own import CHANNEL_NAMES, OPTIONAL, needed
+from svgf_cl.io.reading import Reading
+from svgf_cl.io.shot import Shot, ShotFrame, fields_of
 
 FIRST = 8  # frames that are checked; they tell nearly all that more would
 # What it costs not to have a field.
@@ -22,49 +23,55 @@ COSTS = {
     "albedo": "textures are smoothed like light",
     "id": "objects are told apart by depth and normal alone",
     "emission": "what shines is smoothed too",
-    "direct and indirect": "they are filtered as one",
     OPTIONAL: "history is lost where the camera moves along its axis",
 }
+PARTS = ("direct", "indirect")  # of the light: `Reading.lights` has them
+UNUSED = (*CARRIED, *PARTS, "motion_to_next")
 
 
-def reading(channels: Collection[str]) -> str:
-    """Say in one line which fields are read from which of a file's channels, and which are missing."""
-    there = {field: names for field, all_ in CHANNEL_NAMES.items() if (names := [c for c in all_ if c in channels])}
-    split = "direct" in there
-    unused = [field for field in there if field in CARRIED or (split and field == "color")]
-    read = [f"{field} ({grouped(names)})" for field, names in there.items() if field not in unused]
-    parts = [f"read: {', '.join(read)}"]
-    missing = [field for field in ("albedo", "id", "emission") if field not in there]
-    missing += [] if split else ["direct and indirect"]
-    missing += [] if OPTIONAL in channels else [OPTIONAL]
+def described(reading: Reading, first: ShotFrame) -> str:
+    """Say in one line what the frames are, which fields are read from which channels, and which are missing."""
+    names = {field: found[1] for field, found in reading.sources.items() if field not in UNUSED}
+    light = [light.channels for light in reading.lights if light.filtered]
+    parts = [f"read as {reading.reader.title}: {', '.join(f'{name} ({grouped(names[name])})' for name in names)}"]
+    if light:
+        parts.append(f"light passes: {', '.join(grouped(each) for each in light)}")
+    there = {*fields_of(first.frame), *(["emission"] if reading.lights else [])}
+    missing = [field for field in COSTS if field not in there]
     if missing:
         parts.append(f"missing: {', '.join(f'{field} ({COSTS[field]})' for field in missing)}")
-    if unused:
-        parts.append(f"not needed: {', '.join(unused)}")
-    hint = advice(channels, {field: needed(field) for field in CHANNEL_NAMES if field not in there})
+    unread = [channel for channel in first.image.planes if not any(channel in found for found in names.values())]
+    hint = advice(unread, {field: needed(field) for field in CHANNEL_NAMES if field not in (*names, *PARTS)})
     return "; ".join([*parts, *([f"ignored: {hint}"] if hint else [])])
 
 
-class FirstFrames:
-    """Looks at the first frames of a shot as they come, and warns of what is wrong with them.
+class Remarks:
+    """Looks at frames as they come: says what the first one is read from, and warns of what is wrong in the first few.
 
     Parameters
     ----------
     total : int
         The length of the shot.
+    check : bool
+        Whether to warn.
     """
 
-    def __init__(self, total: int) -> None:
-        self._left = min(FIRST, total)
+    def __init__(self, total: int, *, check: bool) -> None:
+        self._left = min(FIRST, total) if check else 0
+        self._is_first = True
         self._inspection = Inspection()
 
-    def look(self, frame: Frame, *, after_cut: bool) -> None:
-        """Look at the next frame; after the last of the first ones, warn."""
+    def look(self, shot: Shot, index: int, source: ShotFrame) -> None:
+        """Look at the next frame; `FileError` where nothing would come of it."""
+        require_surfaces(source.path, source.frame)
+        if self._is_first:
+            print(described(shot.reading, source))
+            self._is_first = False
         if not self._left:
             return
-        if after_cut:
+        if index in shot.cuts:
             self._inspection.cut()
-        self._inspection.add(frame)
+        self._inspection.add(source.frame)
         self._left -= 1
         if not self._left:
             self._warn()

@@ -17,10 +17,8 @@ from svgf_cl.io.atomic import require
 from svgf_cl.io.display import Linear
 from svgf_cl.io.exr import read_windows
 from svgf_cl.io.pictures import read_picture
-from svgf_cl.io.sequence import after_gaps, find_frames, find_numbered, frame_number
-from svgf_cl.io.shot import read_shot, shared_window
-
-NO_NUMBER = 0  # of the frame of a file that has none in its name
+from svgf_cl.io.sequence import after_gaps, find_frames, find_numbered, frame_number, number_of
+from svgf_cl.io.shot import Shot, moved
 
 
 @dataclass(frozen=True)
@@ -90,11 +88,12 @@ class Recorded:
     def frames(self) -> Iterator[Frame]:
         """Frames as `svgf-cl denoise` reads them, on their display window: that is where references show something."""
         paths = [self.paths[number] for number in self.numbers]
-        shared_window(paths)  # says what keeps them from being one shot
-        window = read_windows(paths[0]).display
-        for path, (_, frame) in zip(paths, read_shot(paths, window), strict=True):
-            check_size(path, frame.shape, self.shape)
-            yield with_color(frame)
+        shot = Shot(paths)
+        display = read_windows(paths[0]).display
+        for path, frame in zip(paths, shot, strict=True):
+            shown = moved(frame, shot.window, display)
+            check_size(path, shown.shape, self.shape)
+            yield with_color(shown)
 
     def truths(self, advance: Callable[[], None]) -> Mapping[int, Pair]:
         """Read the references; the two halves of a pair are the same."""
@@ -171,12 +170,6 @@ def open_pictures(pictures: Path, references: Path) -> Pictures:
 def by_number(folder: Path, stem: str) -> dict[int, Path]:
     """The pictures of a folder by number, those called `stem` if any are; `FileError` where there is no sequence."""
     return {number_of(path): path for path in find_numbered(folder, stem)}
-
-
-def number_of(path: Path) -> int:
-    """The number in a file's name, or `NO_NUMBER`."""
-    number = frame_number(path)
-    return NO_NUMBER if number is None else number
 
 
 def with_color(frame: Frame) -> Frame:

@@ -89,7 +89,7 @@ def grouped(channels: Iterable[str]) -> str:
 
 
 def advice(channels: Iterable[str], wanted: dict[str, tuple[str, ...]]) -> str:
-    """Say which channels look like fields that are missing, and how to call them; nothing where none does.
+    """Say which channels look like fields that are missing, and how to have them read; nothing where none does.
 
     Parameters
     ----------
@@ -102,6 +102,14 @@ def advice(channels: Iterable[str], wanted: dict[str, tuple[str, ...]]) -> str:
     found = look_alikes((name for name in channels if name not in right), wanted)
     parts = []
     for field, texts in found.items():
-        look, which = ("looks", "it") if len(texts) == 1 else ("look", "the right one")
-        parts.append(f"{', '.join(texts)} {look} like {field}; rename {which} to {grouped(wanted[field])}")
+        look = "looks" if len(texts) == 1 else "look"
+        options = " or ".join(f"--map {field}={spelled(text)}" for text in texts)
+        parts.append(f"{', '.join(texts)} {look} like {field}: if it is, give {options}")
     return "; ".join(parts)
+
+
+def spelled(text: str) -> str:
+    """The name of the layer that `grouped` wrote, as one writes it in a shell."""
+    first = text if text.count(" ") == text.rpartition(".")[0].count(" ") else text[: text.rindex(".") + 2]
+    layer = split(first)[0]
+    return f"'{layer}'" if " " in layer else layer

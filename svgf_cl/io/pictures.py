@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -18,31 +18,30 @@ from svgf_cl.io.window import placed
 Picture = npt.NDArray[np.float32]
 
 
-def picture_file(
-    picture: Picture,
-    source: Image | None = None,
-    *,
-    plain: bool = False,
-    others: Mapping[str, npt.NDArray[np.float32]] | None = None,
-) -> Image:
-    """Make the file of a picture.
+def picture_file(picture: Picture) -> Image:
+    """Make the file of a (H, W, 3) linear picture, which has ``R G B`` alone."""
+    return new_image(channels(picture), {})
+
+
+def denoised_file(planes: Mapping[str, Picture], source: Image, *, plain: bool = False) -> Image:
+    """Make the file of what was denoised of a frame.
 
     Parameters
     ----------
-    picture : (H, W, 3) float32
-        Linear radiance.
-    source : Image, optional
-        The file of the frame it was made from, of the same data window: what it says, and its other channels, go along.
+    planes : mapping of str to (H, W) float32
+        Channels that were made.
+    source : Image
+        The file of the frame, of the same data window: what it says, and its other channels, go along.
     plain : bool
         No channels of the source.
-    others : mapping of str to (H, W) float32, optional
-        Channels beside ``R G B``.
     """
-    planes = dict(zip(RGB, np.moveaxis(picture, -1, 0), strict=True)) | dict(others or {})
-    if source is None:
-        return new_image(planes, {})
     kept = source.without(MADE_FROM)
     return kept.with_planes_alone(planes) if plain else kept.with_planes(planes)
+
+
+def channels(picture: Picture, names: Sequence[str] = RGB) -> dict[str, Picture]:
+    """Take a (H, W, 3) picture apart into its channels."""
+    return dict(zip(names, np.moveaxis(picture, -1, 0), strict=True))
 
 
 def write_picture(path: Path, picture: npt.ArrayLike) -> None:

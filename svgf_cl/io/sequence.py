@@ -16,12 +16,14 @@ from pathlib import Path
 
 from svgf_cl.errors import FileError
 from svgf_cl.io.atomic import entries, require, unreadable
+from svgf_cl.io.patterns import expanded
 
 NUMBER = re.compile(r"(?P<head>.*?)(?P<digits>(?:(?<![^._])-)?[0-9]+)(?P<tail>[^0-9]*)", re.DOTALL)
 # A folder that svgf-cl has rendered to holds both; by what is around their numbers.
 OTHERS = {"frame": ("reference.", ".exr"), "reference": ("frame.", ".exr")}
 # Pictures that some command may have written, whatever the names of its frames.
 WRITTEN = {("frame.", ".exr"), ("reference.", ".exr"), ("frame.", ".png"), ("still.", ".png")}
+NO_NUMBER = 0  # of the frame of a file that has none in its name
 SHOWN = 4  # names or gaps that a message lists
 
 
@@ -68,13 +70,19 @@ def frame_number(path: Path) -> int | None:
     return name.number if name else None
 
 
+def number_of(path: Path) -> int:
+    """The number in a file's name, or `NO_NUMBER`."""
+    number = frame_number(path)
+    return NO_NUMBER if number is None else number
+
+
 def find_frames(paths: Iterable[Path], *, allow_gaps: bool = False) -> list[Path]:
     """Find the frames of one shot, in the order of their numbers.
 
     Parameters
     ----------
     paths : iterable of Path
-        Files in any order, or the folder that holds them. A single file needs no number.
+        Files in any order, patterns of their names, or the folder that holds them. A single file needs no number.
     allow_gaps : bool
         Take a shot that lacks frames; `after_gaps` tells where.
 
@@ -94,7 +102,7 @@ def find_frames(paths: Iterable[Path], *, allow_gaps: bool = False) -> list[Path
         Files of the folder look like frames, but are not; numbers are padded in several ways.
     """
     found: list[Path] = []
-    for path in paths:
+    for path in (each for given in paths for each in expanded(given)):
         require(path)
         found += shot_in(path) if path.is_dir() else [path]
     frames = in_order(found)

@@ -1,44 +1,217 @@
-"""The frames of a shot, on the one window that all their pixels lie in."""
+"""`Shot`: the frames of a shot, from files of any renderer, on the one window that all their pixels lie in."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
+from typing import overload
 
 import numpy as np
+import numpy.typing as npt
 
+from svgf_cl.camera import Camera, motion_from_cameras
 from svgf_cl.errors import FileError
-from svgf_cl.frame import Frame
+from svgf_cl.frame import Frame, Shape
+from svgf_cl.io.cameras import camera_of_header, cameras_beside, read_cameras
 from svgf_cl.io.exr import MAX_DISPLAY, read_image, read_windows
-from svgf_cl.io.frames import frame_of
-from svgf_cl.io.image import Image
+from svgf_cl.io.exr_header import read_attributes
+from svgf_cl.io.image import Image, Plane, Windows
+from svgf_cl.io.reading import LightPass, ReadAs, Reading
+from svgf_cl.io.separate import SeparateFiles
+from svgf_cl.io.sequence import after_gaps, number_of
 from svgf_cl.io.window import Window, placed, union
+
+Picture = npt.NDArray[np.float32]
 
 # What the fields of a pixel hold that shows nothing; all others are 0.
 NOTHING = {"depth": np.inf, "albedo": 1.0, "roughness": 1.0}
 
 
-def read_shot(paths: Sequence[Path], window: Window) -> Iterator[tuple[Image, Frame]]:
-    """Read one file of a shot after the other: all of it, and its frame on a window that the shot shares.
+@dataclass(frozen=True, eq=False)
+class Light:
+    """A part of the picture that its file has as a pass.
 
-    Where the frame has no pixel, as data windows may move and change in size, it shows nothing.
+    Parameters
+    ----------
+    channels : tuple of str
+        Its red, green and blue.
+    radiance : (H, W, 3) float32
+        What the pass holds.
+    factor : (H, W, 3) float32, optional
+        What it is to be multiplied by to be a part of the picture; 1 where there is none.
+    filtered : bool
+        Whether it is noisy.
+    """
+
+    channels: tuple[str, ...]
+    radiance: Picture
+    factor: Picture | None
+    filtered: bool
+
+
+@dataclass(frozen=True, eq=False)
+class ShotFrame:
+    """One frame of a shot.
+
+    Parameters
+    ----------
+    path : Path
+    image : Image
+        All of its file.
+    frame : Frame
+        On the window of the shot.
+    lights : tuple of Light
+        What the picture is the sum of, on the same window; none where the file does not say.
+    """
+
+    path: Path
+    image: Image
+    frame: Frame
+    lights: tuple[Light, ...]
+
+
+class Shot(Sequence[Frame]):
+    """The frames of a shot, each read when it is asked for.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        One file a frame, in order.
+    how : ReadAs
+        What the files do not tell.
+    separate : SeparateFiles
+        Further files of each frame.
+
+    Attributes
+    ----------
+    reading : Reading
+        How files become frames.
+    window : Window
+        Of all pixels of the shot, on the display window; outside of its own data window a frame shows nothing.
+    cuts : set of int
+        Indices of the frames that do not follow on the one before them, as frames between the two are missing.
 
     Raises
     ------
     FileError
-        As `read_frame`, and where a frame differs in fields from the first or a field has no usable value.
+        The files cannot lie on one picture, or the first is not read as `how` has it.
     """
-    fields = None
-    for path in paths:
+
+    def __init__(self, paths: Sequence[Path], how: ReadAs | None = None, separate: SeparateFiles | None = None) -> None:
+        self.paths = tuple(paths)
+        self.window = shared_window(self.paths)
+        gaps = after_gaps(self.paths)
+        self.cuts = {index for index, path in enumerate(self.paths) if path in gaps}
+        self._separate = separate or SeparateFiles({})
+        first = read_image(self.paths[0])
+        self.reading = Reading(self.paths[0], first, how or ReadAs(), self._separate.channels(number_of(self.paths[0])))
+        self._display = read_windows(self.paths[0]).display
+        self._cameras: dict[int, Camera | None] = {}
+        self._fields: set[str] | None = None
+
+    @property
+    def shape(self) -> Shape:
+        """(height, width) of all frames."""
+        return self.window.height, self.window.width
+
+    def __len__(self) -> int:
+        return len(self.paths)
+
+    @overload
+    def __getitem__(self, index: int) -> Frame: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Frame]: ...
+    def __getitem__(self, index: int | slice) -> Frame | list[Frame]:
+        if isinstance(index, slice):
+            return [self.read(each).frame for each in range(*index.indices(len(self)))]
+        return self.read(range(len(self))[index]).frame
+
+    def read(self, index: int) -> ShotFrame:
+        """Read all of a frame.
+
+        Raises
+        ------
+        FileError
+            Its file is missing or damaged, lacks a field or has another set of fields than the first that was read, or
+            a field has no usable value.
+        """
+        path = self.paths[index]
         image = read_image(path)
-        frame = frame_of(path, image.planes)
-        fields = fields or fields_of(frame)
-        changes = [f"without {name}" for name in sorted(fields - fields_of(frame))]
-        changes += [f"with {name}" for name in sorted(fields_of(frame) - fields)]
-        if changes:
-            raise FileError(f"{path}: expected the fields of {paths[0]}, got a frame {', '.join(changes)}")
+        planes = {**image.planes, **self._separate.planes(number_of(path))}
+        frame = self.reading.frame(path, planes, *self._cameras_at(index, image.windows))
+        self._check_fields(path, frame)
         check_usable(path, frame)
-        yield image, moved(frame, image.windows.data, window)
+        own = image.windows.data
+        lights = tuple(self._light(path, planes, light, own) for light in self.reading.lights)
+        return ShotFrame(path, image, moved(frame, own, self.window), lights)
+
+    def motion_to_next(self, index: int, frame: Frame) -> Picture | None:
+        """The motion of a frame to the next one, (H, W, 2 or 3), where its file or the cameras tell it."""
+        path = self.paths[index]
+        if "motion_to_next" in self.reading.sources:
+            image = read_image(path)
+            motion = self.reading.motion_to_next(path, image.planes)
+            return None if motion is None else placed(motion, image.windows.data, self.window, 0.0)
+        if "motion" in self.reading.sources:
+            return None
+        windows = Windows(self.window, self._display)
+        camera, following = (self._shifted(self._camera(number_of(path) + step), windows) for step in (0, 1))
+        if camera is None or following is None:
+            return None
+        return motion_from_cameras(camera, following, depth=frame.depth)
+
+    def _cameras_at(self, index: int, windows: Windows) -> tuple[Camera | None, Camera | None]:
+        """The cameras of a frame and of the one before, where fields are computed from them."""
+        if {"depth", "motion"} <= self.reading.sources.keys():
+            return None, None
+        number = number_of(self.paths[index])
+        return self._shifted(self._camera(number), windows), self._shifted(self._camera(number - 1), windows)
+
+    def _camera(self, number: int) -> Camera | None:
+        """The camera of a frame by its number: as the user or a file beside it has it, or as its own header has it."""
+        if number not in self._cameras:
+            camera = self._given_cameras.get(number)
+            path = next((path for path in self.paths if number_of(path) == number), None)
+            if camera is None and path is not None:
+                camera = camera_of_header(read_attributes(path)[0], (self._display.height, self._display.width))
+            self._cameras[number] = camera
+        return self._cameras[number]
+
+    @cached_property
+    def _given_cameras(self) -> Mapping[int, Camera]:
+        file = cameras_beside(self.paths[0])
+        return self.reading.how.cameras or (read_cameras(file) if file else {})
+
+    def _shifted(self, camera: Camera | None, windows: Windows) -> Camera | None:
+        """A camera whose pixels count from the corner of a data window."""
+        if camera is None:
+            return None
+        return camera.cropped(windows.data.x - windows.display.x, windows.data.y - windows.display.y)
+
+    def _light(self, path: Path, planes: Mapping[str, Plane], light: LightPass, own: Window) -> Light:
+        """A light of a file, on the window of the shot."""
+        radiance = placed(stacked(path, planes, light.channels), own, self.window, 0.0)
+        factor = placed(stacked(path, planes, light.factor), own, self.window, 0.0) if light.factor else None
+        return Light(light.channels, radiance, factor, light.filtered)
+
+    def _check_fields(self, path: Path, frame: Frame) -> None:
+        """Raise `FileError` where a frame has another set of fields than the first one."""
+        have = fields_of(frame)
+        self._fields = self._fields or have
+        changes = [f"without {name}" for name in sorted(self._fields - have)]
+        changes += [f"with {name}" for name in sorted(have - self._fields)]
+        if changes:
+            raise FileError(f"{path}: expected the fields of {self.paths[0]}, got a frame {', '.join(changes)}")
+
+
+def stacked(path: Path, planes: Mapping[str, Plane], channels: Sequence[str]) -> Picture:
+    """The picture (H, W, 3) of three channels; `FileError` where the file lacks one."""
+    lost = [channel for channel in channels if channel not in planes]
+    if lost:
+        raise FileError(f"{path}: expected the light pass {' '.join(channels)} as in the first frame, found it not")
+    return np.stack([np.asarray(planes[channel], np.float32) for channel in channels], axis=-1)
 
 
 def shared_window(paths: Sequence[Path]) -> Window:

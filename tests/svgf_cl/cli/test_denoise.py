@@ -135,19 +135,31 @@ def test_a_filter_that_is_none(rendered: Path, tmp_path: Path, refused) -> None:
     refused("a name out of", "denoise", rendered, "-o", tmp_path, "--filter", "eaw", "--set", "sigma_luminance=1")
 
 
-def test_all_but_the_picture_passes_through(rendered: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_all_but_the_light_passes_through(rendered: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("denoise", rendered, "-o", tmp_path / "out") == 0
+    assert run("denoise", rendered, "-o", tmp_path / "picture", "--no-passes") == 0
     assert run("denoise", rendered, "-o", tmp_path / "plain", "--plain") == 0
+    light = {*"RGB", *(f"{name}.{c}" for name in ("direct", "indirect") for c in "RGB")}
     for name in NAMES:
         noisy, clean, plain = (read_image(folder / name) for folder in (rendered, tmp_path / "out", tmp_path / "plain"))
+        picture = read_channels(tmp_path / "picture" / name)
         assert clean.planes.keys() == noisy.planes.keys() > plain.planes.keys() == {"R", "G", "B"}
-        changed = {key for key, plane in noisy.planes.items() if plane.tobytes() != clean.planes[key].tobytes()}
-        assert changed == plain.planes.keys()
+        assert changed(noisy.planes, clean.planes) == light
+        assert changed(noisy.planes, picture) == {"R", "G", "B"}
         assert all(plane.tobytes() == clean.planes[key].tobytes() for key, plane in plain.planes.items())
+        for c in "RGB":
+            np.testing.assert_allclose(
+                clean.planes[f"direct.{c}"] + clean.planes[f"indirect.{c}"], clean.planes[c], rtol=1e-6, atol=1e-7
+            )
     capsys.readouterr()
     assert run("denoise", rendered, "-o", tmp_path / "out", "--plain") == 0
     assert "kept" not in capsys.readouterr().out
     assert contents(tmp_path / "out") == contents(tmp_path / "plain")
+
+
+def changed(before: dict[str, np.ndarray], after: dict[str, np.ndarray]) -> set[str]:
+    """The channels that are not the same, bit by bit."""
+    return {key for key, plane in before.items() if plane.tobytes() != after[key].tobytes()}
 
 
 def test_another_attribute_or_channel_is_written_though_the_picture_is_the_same(

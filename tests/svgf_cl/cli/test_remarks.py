@@ -10,9 +10,10 @@ import pytest
 
 from svgf_cl import Frame
 from svgf_cl.cli import remarks
-from svgf_cl.cli.remarks import reading
+from svgf_cl.cli.remarks import described
 from svgf_cl.io.exr import read_channels, write_channels
 from svgf_cl.io.frames import frame_path, write_frame
+from svgf_cl.io.shot import Shot
 from svgf_cl.io.synthetic import room_frames
 from tests.command_line import run
 
@@ -45,39 +46,47 @@ def changed(room: list[Frame], field: str, change) -> list[Frame]:
     return [replace(frame, **{field: change(getattr(frame, field)).astype(np.float32)}) for frame in room]
 
 
-def test_one_line_says_what_is_read_and_what_that_costs() -> None:
-    line = reading(PLAIN)
-    assert line.startswith(
-        "read: color (R G B), normal (normal.X Y Z), motion (motion.X Y), depth (depth.Z); missing: "
+def line(folder: Path, names: list[str]) -> str:
+    """What is said of a frame with these channels."""
+    planes = {name: np.ones((3, 4), np.float32) for name in names}
+    write_channels(folder / "frame.0000.exr", planes)
+    shot = Shot([folder / "frame.0000.exr"])
+    return described(shot.reading, shot.read(0))
+
+
+def test_one_line_says_what_is_read_and_what_that_costs(tmp_path: Path) -> None:
+    text = line(tmp_path, PLAIN)
+    assert text.startswith(
+        "read as svgf_cl, or a renderer with its channel names: "
+        "color (R G B), normal (normal.X Y Z), motion (motion.X Y), depth (depth.Z); missing: "
     )
-    for field in ("albedo", "id", "emission", "direct and indirect", "motion.Z"):
-        assert f"{field} ({remarks.COSTS[field]})" in line
-    assert "\n" not in line
-    assert "ignored" not in line
+    for field in ("albedo", "id", "emission", "motion.Z"):
+        assert f"{field} ({remarks.COSTS[field]})" in text
+    assert "\n" not in text
+    assert "ignored" not in text
 
 
-def test_what_is_there_is_not_missing() -> None:
-    assert "albedo (albedo.R G B)" in reading(FULL)
-    assert "missing: direct and indirect (they are filtered as one)" in reading(FULL)
+def test_what_is_there_is_not_missing(tmp_path: Path) -> None:
+    assert "albedo (albedo.R G B)" in line(tmp_path, FULL)
     every = [*FULL, "roughness", *(f"{field}.{c}" for field in ("direct", "indirect") for c in "RGB")]
-    assert "missing" not in reading(every)
-    assert reading(every).endswith("; not needed: color, roughness")
+    assert "missing" not in line(tmp_path, every)
+    assert line(tmp_path, every).endswith("; light passes: direct.R G B, indirect.R G B")
 
 
-def test_what_is_ignored_is_named_only_where_its_field_is_missing() -> None:
+def test_what_is_ignored_is_named_only_where_its_field_is_missing(tmp_path: Path) -> None:
     extra = ["A", "Z", "P.X", "P.Y", "P.Z", "Albedo.R", "Albedo.G", "Albedo.B"]
-    line = reading([*PLAIN, *extra])
-    assert line.endswith("; ignored: Albedo.R G B looks like albedo; rename it to albedo.R G B")
-    assert "ignored" not in reading([*FULL, *extra])
+    text = line(tmp_path, [*PLAIN, *extra])
+    assert text.endswith("; ignored: Albedo.R G B looks like albedo: if it is, give --map albedo=Albedo")
+    assert "ignored" not in line(tmp_path, [*FULL, *extra])
 
 
 def test_both_commands_say_it(tmp_path: Path, room: list[Frame], capsys: pytest.CaptureFixture[str]) -> None:
     folder = written(tmp_path / "in", room)
     out, err = said(capsys, folder, "-o", tmp_path / "out")
-    assert out.count("read: ") == 1
+    assert out.count("read as ") == 1
     assert not err
     assert run("check", folder) == 0
-    assert capsys.readouterr().out.startswith("read: color (R G B), ")
+    assert capsys.readouterr().out.startswith("read as svgf_cl")
 
 
 @pytest.mark.parametrize(("field", "other"), [("depth.Z", "Z"), ("normal.X", "N.X"), ("motion.X", "Vector.X")])
@@ -88,7 +97,7 @@ def test_an_error_names_what_a_field_may_be(tmp_path: Path, room: list[Frame], f
               for name, plane in read_channels(folder / "frame.0000.exr").items()}  # fmt: skip
     write_channels(folder / "frame.0000.exr", planes)
     refused(f"{other}", "denoise", folder, "-o", tmp_path / "out")
-    refused(f"like {old}; rename it to {old}.", "denoise", folder, "-o", tmp_path / "out")
+    refused(f"like {old}: if it is, give --map {old}={new}", "denoise", folder, "-o", tmp_path / "out")
 
 
 def test_a_mistake_is_a_warning_and_no_check_keeps_quiet(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from svgf_cl.io.frames import CHANNEL_NAMES, needed
 from svgf_cl.io.look_alikes import advice, grouped, look_alikes
+from svgf_cl.io.readers.own import CHANNEL_NAMES, needed
 
 ALIKE = [
     ("depth", "Z"), ("depth", "depth"), ("depth", "Depth.Z"), ("depth", "ViewLayer.Depth.Z"), ("depth", "ViewLayer.Z"),
@@ -48,12 +48,14 @@ def test_layers_are_named_once() -> None:
     )
 
 
-def test_advice_says_what_to_rename() -> None:
+def test_advice_says_what_to_map() -> None:
     wanted = {field: needed(field) for field in ("depth", "motion", "albedo")}
     assert advice(["R", "Z", "Vector.X", "Vector.Y", "A"], wanted) == (
-        "Z looks like depth; rename it to depth.Z; Vector.X Y looks like motion; rename it to motion.X Y"
+        "Z looks like depth: if it is, give --map depth=Z; "
+        "Vector.X Y looks like motion: if it is, give --map motion=Vector"
     )
     assert advice(["albedo.R", "albedo.G", "albedo.b"], wanted) == (
-        "albedo.b looks like albedo; rename it to albedo.R G B"
+        "albedo.b looks like albedo: if it is, give --map albedo=albedo"
     ), "what has its right name already needs no other"
     assert advice(["A", "samples"], wanted) == ""
+    assert "albedo='V.Denoising Albedo'" in advice([f"V.Denoising Albedo.{c}" for c in "RGB"], wanted)

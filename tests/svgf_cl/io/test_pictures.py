@@ -14,7 +14,7 @@ from hypothesis.extra import numpy as hnp
 from svgf_cl import FileError
 from svgf_cl.io.exr import read_channels, read_image, write_image
 from svgf_cl.io.frames import MADE_FROM
-from svgf_cl.io.pictures import holds, is_picture, picture_file, read_picture, write_picture
+from svgf_cl.io.pictures import channels, denoised_file, holds, is_picture, picture_file, read_picture, write_picture
 from svgf_cl.io.window import Window
 from tests.exr_files import exr_bytes
 
@@ -68,7 +68,8 @@ def test_what_a_picture_was_made_from_goes_along(tmp_path: Path) -> None:
     made_from, owner = {MADE_FROM: ("string", b"a scene")}, {"owner": ("string", b"me")}
     (tmp_path / "in.exr").write_bytes(exr_bytes(planes, made_from | owner, (1, 2), Window(0, 0, 9, 9)))
     source = read_image(tmp_path / "in.exr")
-    images = [picture_file(PICTURE, source), picture_file(PICTURE, source, plain=True), picture_file(PICTURE)]
+    made = channels(PICTURE)
+    images = [denoised_file(made, source), denoised_file(made, source, plain=True), picture_file(PICTURE)]
     for image in images:
         write_image(tmp_path / "out.exr", image)
         assert [holds(tmp_path / "out.exr", other) for other in images] == [other is image for other in images]

@@ -12,7 +12,7 @@ from svgf_cl import FileError, Frame
 from svgf_cl.io.exr import read_image, write_image
 from svgf_cl.io.frames import frame_path, read_frame, write_frame
 from svgf_cl.io.sequence import find_frames
-from svgf_cl.io.shot import read_shot, shared_window
+from svgf_cl.io.shot import Shot, shared_window
 from svgf_cl.io.window import Window
 from tests.exr_files import exr_bytes
 from tests.frames import wall
@@ -24,8 +24,7 @@ def plain_frame(h: int = 3, w: int = 4, **fields: object) -> Frame:
 
 
 def frames_in(folder: Path) -> list[Frame]:
-    files = find_frames([folder])
-    return [frame for _, frame in read_shot(files, shared_window(files))]
+    return list(Shot(find_frames([folder])))
 
 
 def test_frames_of_a_sequence_have_one_size(tmp_path: Path) -> None:

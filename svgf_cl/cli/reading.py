@@ -1,0 +1,83 @@
+"""Options that say how frames of other renderers are to be read, and the shot that comes of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from svgf_cl.errors import SvgfError, shown
+from svgf_cl.io.cameras import NAME, read_cameras
+from svgf_cl.io.readers import READERS
+from svgf_cl.io.reading import ReadAs
+
+Format = Annotated[
+    str | None,
+    typer.Option(
+        "--format", metavar="NAME", help=f"Renderer of the frames: {' or '.join(READERS)}. Told from the first file."
+    ),
+]
+Maps = Annotated[
+    list[str],
+    typer.Option(
+        "--map", metavar="FIELD=PASS", help="Read a field from another pass: --map depth=Z,normal=N. May be repeated."
+    ),
+]
+ViewLayer = Annotated[
+    str | None, typer.Option("--view-layer", metavar="NAME", help="Which one to read of a file that has several.")
+]
+Cameras = Annotated[
+    Path | None,
+    typer.Option(
+        "--cameras",
+        metavar="FILE",
+        help=f"Cameras of the frames, where files have no motion; {NAME} beside the frames is found.",
+    ),
+]
+StillCamera = Annotated[
+    bool, typer.Option("--still-camera", help="Where nothing tells motion, take camera and all things to stand still.")
+]
+MotionScale = Annotated[
+    float, typer.Option("--motion-scale", metavar="X", help="Multiply motion, to have it in pixels.")
+]
+MotionFlip = Annotated[
+    str, typer.Option("--motion-flip", metavar="AXES", help="Turn axes of motion round: x, y or xy.")
+]
+
+
+def read_as(
+    format_: str | None,
+    maps: Sequence[str],
+    view_layer: str | None,
+    cameras: Path | None,
+    still_camera: bool,
+    motion_scale: float,
+    motion_flip: str,
+) -> ReadAs:
+    """Make a `ReadAs` of the options; `SvgfError` where one of them is wrong."""
+    if motion_flip not in ("", "x", "y", "xy"):
+        raise SvgfError(f"--motion-flip: expected x, y or xy, got {shown(motion_flip)}")
+    if not 0 < motion_scale < 1e9:
+        raise SvgfError(f"--motion-scale: expected a number above 0, got {motion_scale:g}")
+    scale = tuple(-motion_scale if axis in motion_flip else motion_scale for axis in "xy")
+    return ReadAs(
+        format=format_,
+        view_layer=view_layer,
+        passes=parse_maps(maps),
+        motion_scale=(scale[0], scale[1]),
+        cameras=read_cameras(cameras) if cameras else {},
+        still_camera=still_camera,
+    )
+
+
+def parse_maps(texts: Sequence[str]) -> Mapping[str, str]:
+    """Read ``["depth=Z,normal=N"]`` as a mapping of fields to passes."""
+    found = {}
+    for text in (part for each in texts for part in each.split(",")):
+        name, _, wanted = text.partition("=")
+        if not wanted:
+            raise SvgfError(f"--map: expected FIELD=PASS such as depth=Z, got {shown(text)}")
+        found[name.strip()] = wanted.strip()
+    return found

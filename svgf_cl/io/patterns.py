@@ -1,0 +1,67 @@
+"""Names of numbered files as one writes them: ``shot/beauty.####.exr``, ``shot/beauty.%04d.exr``, ``shot/*.exr``."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+
+from svgf_cl.errors import FileError, SvgfError, shown
+from svgf_cl.io.atomic import entries, require
+
+# Where the number goes: a run of #, or %d as of C.
+NUMBER = re.compile(r"#+|%(?:0(?P<width>[1-9]))?d")
+GLOB = re.compile(r"[*?\[]")
+RANGE = re.compile(r"(?P<first>-?\d{1,9})(?:-(?P<last>-?\d{1,9}))?", re.ASCII)
+
+
+def expanded(path: Path) -> list[Path]:
+    """The files that a name stands for: those that fit its pattern; itself where it has none.
+
+    Raises
+    ------
+    FileError
+        No file fits the pattern, or it has more than one number.
+    """
+    if os.path.exists(path) or not (NUMBER.search(path.name) or GLOB.search(path.name)):
+        return [path]
+    require(path.parent)
+    if NUMBER.search(path.name):
+        head, tail = around_number(path)
+        fits = re.compile(f"{re.escape(head)}-?[0-9]+{re.escape(tail)}")
+        found = [entry for entry in entries(path.parent) if fits.fullmatch(entry.name)]
+    else:
+        found = [entry for entry in path.parent.glob(path.name) if not entry.name.startswith(".")]
+    if not found:
+        raise FileError(f"{path}: expected files of this pattern, found none")
+    return sorted(found)
+
+
+def has_number(path: Path) -> bool:
+    """Whether a name has a place for a number."""
+    return bool(NUMBER.search(path.name))
+
+
+def numbered(pattern: Path, number: int) -> Path:
+    """The file that a pattern means for a number, padded as the pattern says."""
+    head, tail = around_number(pattern)
+    match = NUMBER.search(pattern.name)
+    width = 1 if match is None else len(match[0]) if match[0].startswith("#") else int(match["width"] or 1)
+    return pattern.with_name(f"{head}{'-' * (number < 0)}{abs(number):0{width}d}{tail}")
+
+
+def around_number(pattern: Path) -> tuple[str, str]:
+    """What stands before and behind the number."""
+    parts = NUMBER.sub("\0", pattern.name).split("\0")
+    if len(parts) != 2:
+        raise FileError(f"{pattern}: expected one number, as #### or %04d, got {len(parts) - 1}")
+    return parts[0], parts[1]
+
+
+def parse_range(text: str) -> tuple[int, int]:
+    """Read ``1-120`` or ``7`` as the first and the last number."""
+    match = RANGE.fullmatch(text)
+    first, last = (int(match["first"]), int(match["last"] or match["first"])) if match else (1, 0)
+    if last < first:
+        raise SvgfError(f"--frames: expected FIRST-LAST such as 1-120, or one number, got {shown(text)}")
+    return first, last

@@ -1,0 +1,61 @@
+"""Arnold's multichannel EXR: R G B A (RGBA), and a layer for each AOV; the header has the camera's matrices.
+
+N is in world space, Z the distance along the camera's axis, motionvector the way a point makes in pixels during the
+shutter interval, y up. With an interval of a whole frame, centred on it or begun by it, that is minus our motion, as
+far as things move evenly.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from svgf_cl.io.readers.reader import Array, Light, Pass, Reader, has_attribute, hashes
+
+FAR = 1e9  # depths beyond it stand for a ray that hit nothing
+
+
+def against_time(vector: Array) -> Array:
+    """The motion to the previous frame, y down, of the way made during a frame, y up."""
+    moved: Array = vector[..., :2] * np.array([-1, 1], np.float32)
+    return moved
+
+
+def along_time(vector: Array) -> Array:
+    """The motion to the next frame, y down."""
+    moved: Array = vector[..., :2] * np.array([1, -1], np.float32)
+    return moved
+
+
+def depth_of_hits(depth: Array) -> Array:
+    """Depth, infinite where nothing was hit: there Arnold writes 0, or a great number."""
+    return np.where((depth > 0) & (depth < FAR), depth, np.float32(np.inf))
+
+
+ARNOLD = Reader(
+    name="arnold",
+    title="Arnold, multichannel EXR",
+    recognises=lambda image: has_attribute(image, "arnold/"),
+    passes={
+        "color": (Pass(("", "RGBA", "beauty"), 3),),
+        "albedo": (Pass(("albedo", "denoise_albedo", "diffuse_albedo"), 3),),
+        "normal": (Pass(("N", "denoise_normal", "normal"), 3),),
+        "depth": (Pass(("Z", "depth"), 1, depth_of_hits),),
+        "position": (Pass(("P",), 3),),
+        "motion": (Pass(("motionvector",), 2, against_time),),
+        "motion_to_next": (Pass(("motionvector",), 2, along_time),),
+        "id": (Pass(("crypto_object00",), 4, hashes),),
+    },
+    switches={
+        "albedo": "add the AOV albedo",
+        "normal": "add the AOV N",
+        "depth": "add the AOV Z",
+        "motion": "add the AOV P, or motionvector (Camera > Instantaneous Shutter for Motion Vectors)",
+    },
+    lights=(
+        Light(("diffuse_direct", "diffuse_indirect", "specular_direct", "specular_indirect")),
+        Light(("coat_direct", "coat_indirect", "sheen_direct", "sheen_indirect")),
+        Light(("transmission_direct", "transmission_indirect", "sss_direct", "sss_indirect")),
+        Light(("volume_direct", "volume_indirect")),
+        Light(("emission", "background"), filtered=False),
+    ),
+)

@@ -1,0 +1,69 @@
+"""Blender's OpenEXR MultiLayer files, of Cycles: ``ViewLayer.Combined.R`` and so on.
+
+Conventions, found numerically on frames of Blender 4.2: Vector holds the previous position minus the current one in its
+X and Y, and the current one minus the next in Z and W, in pixels, y up. Depth is the camera's z, 1e10 where nothing
+was hit. Normal is in world space. Denoising Albedo of a sharp mirror is that of what it reflects.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from svgf_cl.io.image import Image
+from svgf_cl.io.readers.passes import place
+from svgf_cl.io.readers.reader import Array, Light, Pass, Reader, has_attribute, hashes, without_edges
+
+NOTHING = 1e9  # depths beyond it stand for a ray that hit nothing
+
+
+def recognises(image: Image) -> bool:
+    """Whether Blender says so, or a view layer has a pass called as Blender calls the picture."""
+    return has_attribute(image, "BlenderMultiChannel") or any(place(name).name == "combined" for name in image.planes)
+
+
+def to_previous(vector: Array) -> Array:
+    """The motion to the previous frame, y down."""
+    moved: Array = vector[..., :2] * np.array([1, -1], np.float32)
+    return moved
+
+
+def to_next(vector: Array) -> Array:
+    """The motion to the next frame, y down."""
+    moved: Array = vector[..., 2:4] * np.array([-1, 1], np.float32)
+    return moved
+
+
+def camera_depth(depth: Array) -> Array:
+    """Depth, infinite where nothing was hit."""
+    return np.where(depth < NOTHING, depth, np.float32(np.inf))
+
+
+BLENDER = Reader(
+    name="blender",
+    title="Blender (Cycles), OpenEXR MultiLayer",
+    recognises=recognises,
+    passes={
+        "color": (Pass(("Combined", "Image"), 3),),
+        "albedo": (Pass(("Denoising Albedo",), 3),),
+        "normal": (Pass(("Normal",), 3),),
+        "depth": (Pass(("Depth",), 1, camera_depth),),
+        "motion": (Pass(("Vector",), 4, to_previous),),
+        "motion_to_next": (Pass(("Vector",), 4, to_next),),
+        "id": (Pass(("CryptoObject00",), 4, hashes), Pass(("IndexOB", "Object Index"), 1, without_edges)),
+    },
+    switches={
+        "color": "write OpenEXR MultiLayer: Output Properties > Output > File Format",
+        "albedo": "enable View Layer Properties > Passes > Data > Denoising Data",
+        "normal": "enable View Layer Properties > Passes > Data > Normal",
+        "depth": "enable View Layer Properties > Passes > Data > Z",
+        "motion": "enable View Layer Properties > Passes > Data > Vector, and turn off Render > Motion Blur, with which"
+        " Blender does not write it",
+    },
+    lights=(
+        Light(("DiffDir", "DiffInd"), "DiffCol"),
+        Light(("GlossDir", "GlossInd"), "GlossCol"),
+        Light(("TransDir", "TransInd"), "TransCol"),
+        Light(("VolumeDir", "VolumeInd")),
+        Light(("Emit", "Env"), filtered=False),
+    ),
+)

@@ -1,0 +1,61 @@
+"""Our own channels, docs/conventions.md: those that ``svgf-cl render`` writes, and any renderer with these names."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from svgf_cl.io.image import Image
+from svgf_cl.io.readers.reader import Array, Exactly, Light, Reader
+
+# Channels of each field, in the order of its components; `OPTIONAL` may be missing.
+CHANNEL_NAMES: dict[str, tuple[str, ...]] = {
+    "color": ("R", "G", "B"),
+    **{
+        name: tuple(f"{name}.{c}" for c in "RGB")
+        for name in ("albedo", "emission", "direct", "indirect", "diffuse", "specular")
+    },
+    **{name: tuple(f"{name}.{c}" for c in "XYZ") for name in ("normal", "motion")},
+    "depth": ("depth.Z",),
+    "id": ("id",),
+    "roughness": ("roughness",),
+    "hit_distance": ("hit_distance.diffuse", "hit_distance.specular"),
+}
+OPTIONAL = "motion.Z"
+MAX_ID = 2**24  # of ids in a channel of floats
+
+
+def needed(field: str) -> tuple[str, ...]:
+    """The channels without which a field is not there."""
+    return tuple(name for name in CHANNEL_NAMES[field] if name != OPTIONAL)
+
+
+def recognises(image: Image) -> bool:
+    """Whether the image has one of the fields that nothing but these names are used for."""
+    planes = image.planes.keys()
+    return any(planes >= set(needed(field)) for field in ("normal", "depth", "motion"))
+
+
+def whole_numbers(plane: Array) -> Array:
+    """Ids as integers; `ValueError` unless they are, or are whole numbers that float32 holds exactly."""
+    if plane.dtype == np.uint32:
+        return plane
+    values = np.asarray(plane, np.float32)
+    fits = (values >= 0) & (values <= MAX_ID) & (values == np.floor(values))
+    if not fits.all():
+        raise ValueError(
+            f"expected whole numbers in 0..{MAX_ID} in channel id, got {values[~fits][0]}; "
+            "an id up to 4294967295 takes a channel of unsigned integers"
+        )
+    return values.astype(np.uint32)
+
+
+OWN = Reader(
+    name="svgf_cl",
+    title="svgf_cl, or a renderer with its channel names",
+    recognises=recognises,
+    passes={
+        field: (Exactly(names, (OPTIONAL,), whole_numbers if field == "id" else None),)
+        for field, names in CHANNEL_NAMES.items()
+    },
+    lights=(Light(("direct", "indirect")), Light(("emission",), filtered=False)),
+)

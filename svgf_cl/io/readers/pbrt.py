@@ -1,0 +1,69 @@
+"""pbrt-v4's film "gbuffer": R G B, Albedo, P, N and Ns; the header has the camera's matrices.
+
+Positions and normals are in camera space unless the film says ``"string coordinatesystem" "world"``. Which of the two
+it was is told by where positions project to: in the right one they lie on their own pixels.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from svgf_cl.camera import Camera, view_axes
+from svgf_cl.io.image import Image
+from svgf_cl.io.readers.reader import Array, Pass, Reader, Values
+
+SWITCH = 'render with Film "gbuffer"'
+AXES = ("renderman", "mitsuba")  # x to the right, as the format says, or to the left, as mirrored cameras have it
+
+Turn = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]
+
+
+def recognises(image: Image) -> bool:
+    """Whether the image has the slopes of depth that no other renderer writes."""
+    return image.planes.keys() >= {"dzdx", "dzdy"}
+
+
+def in_world(values: Values, camera: Camera | None) -> Values:
+    """Take positions and normals from camera space to the world, where they are not there already."""
+    if camera is None or "position" not in values:
+        return values
+    position = np.asarray(values["position"], np.float64)
+    hit = np.any(position != 0.0, axis=-1)
+    unmoved = np.eye(3), np.zeros(3)
+    turn, offset = min(
+        (unmoved, *(to_world(camera, axes) for axes in AXES)), key=lambda t: error(position, hit, camera, t)
+    )
+    moved: Values = {"position": np.where(hit[..., None], position @ turn.T + offset, np.nan)}
+    if "normal" in values:
+        moved["normal"] = np.asarray(values["normal"] @ turn.T, np.float32)
+    return {**values, **moved}
+
+
+def to_world(camera: Camera, axes: str) -> Turn:
+    """Rotation and offset that take columns from the camera's space, whose axes have this name, to the world."""
+    inverse = np.linalg.inv(camera.world_to_view) @ view_axes("pbrt", axes)
+    return inverse[:3, :3], inverse[:3, 3]
+
+
+def error(position: Array, hit: Array, camera: Camera, turn: Turn) -> float:
+    """How far positions lie off their own pixels if they are turned like that: the median, in pixels."""
+    rows, columns = np.nonzero(hit)
+    pixels, _ = camera.project(position[rows, columns] @ turn[0].T + turn[1])
+    distance = np.hypot(*(pixels - np.stack([columns, rows], axis=-1)).T)
+    return float(np.median(np.nan_to_num(distance, nan=np.inf))) if rows.size else 0.0
+
+
+PBRT = Reader(
+    name="pbrt",
+    title='pbrt-v4, Film "gbuffer"',
+    recognises=recognises,
+    passes={
+        "color": (Pass(("",), 3),),
+        "albedo": (Pass(("Albedo",), 3),),
+        "normal": (Pass(("Ns", "N"), 3),),
+        "position": (Pass(("P",), 3),),
+    },
+    switches=dict.fromkeys(("albedo", "normal", "depth", "motion"), SWITCH),
+    complete=in_world,
+)

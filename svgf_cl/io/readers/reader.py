@@ -1,0 +1,202 @@
+"""`Reader`: how one renderer writes the fields of a frame, and the light that its picture is the sum of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from svgf_cl.camera import Camera
+from svgf_cl.io.image import Image
+from svgf_cl.io.readers.passes import Passes, plain
+
+Array = npt.NDArray[Any]
+Convert = Callable[[Array], Array]
+# What passes hold: fields of `Frame`, or what fields can be computed from, by name.
+Values = dict[str, Array]
+Complete = Callable[[Values, Camera | None], Values]
+
+# What is no field of a frame, but fields can be computed from. World positions; lengths of the rays from the camera;
+# where a pixel is in the next frame, as `motion`. With the number of components.
+HELPERS = {"position": 3, "distance": 1, "motion_to_next": 2}
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a file has, in one view layer of it."""
+
+    channels: Collection[str]
+    passes: Passes
+
+
+class Source(Protocol):
+    """Where a field may come from."""
+
+    @property
+    def convert(self) -> Convert | None:
+        """What makes ours of its array."""
+
+    def find(self, found: Found) -> tuple[str, ...]:
+        """Its channels; none where it is not there, `ValueError` where it is there in part."""
+
+    def read(self, planes: Sequence[Array]) -> Array:
+        """Make the field of the planes of its channels."""
+
+
+@dataclass(frozen=True)
+class Pass:
+    """A pass, by the names that it may have.
+
+    Parameters
+    ----------
+    names : tuple of str
+        The likeliest first; capitals, spaces and signs do not matter. "" is the picture without a layer.
+    size : int
+        Components that it has at least.
+    convert : callable, optional
+        Makes ours of its (H, W, C) array, or (H, W) where `size` is 1; without it the first `size` components are ours.
+    """
+
+    names: tuple[str, ...]
+    size: int
+    convert: Convert | None = None
+
+    def find(self, found: Found) -> tuple[str, ...]:
+        """Its channels."""
+        for name in map(plain, self.names):
+            channels = found.passes.get(name, ())
+            if len(channels) >= self.size:
+                return self.used(channels)
+        return ()
+
+    def used(self, channels: tuple[str, ...]) -> tuple[str, ...]:
+        """Those of a pass's channels that `read` takes."""
+        return channels if self.convert and self.size > 1 else channels[: self.size]
+
+    def read(self, planes: Sequence[Array]) -> Array:
+        """Make the field of its planes."""
+        values = planes[0] if self.size == 1 else np.stack(planes, axis=-1)
+        return self.convert(values) if self.convert else values
+
+
+@dataclass(frozen=True)
+class Exactly:
+    """Channels of these very names.
+
+    Parameters
+    ----------
+    names : tuple of str
+        In the order of the components.
+    optional : tuple of str
+        Those that may be missing.
+    convert : callable, optional
+        As of `Pass`.
+    """
+
+    names: tuple[str, ...]
+    optional: tuple[str, ...] = ()
+    convert: Convert | None = None
+
+    def find(self, found: Found) -> tuple[str, ...]:
+        """Those that are there."""
+        there = tuple(name for name in self.names if name in found.channels)
+        missing = [name for name in self.names if name not in (*there, *self.optional)]
+        if there and missing:
+            raise ValueError(f"expected channels {' '.join(self.names)}, found {' '.join(there)} alone")
+        return there
+
+    def read(self, planes: Sequence[Array]) -> Array:
+        """Make the field of its planes."""
+        values = planes[0] if len(self.names) == 1 else np.stack(planes, axis=-1)
+        return self.convert(values) if self.convert else values
+
+
+@dataclass(frozen=True)
+class Light:
+    """Parts of the picture that are stored as passes of their own.
+
+    Parameters
+    ----------
+    names : tuple of str
+        The passes; each is filtered by itself.
+    factor : str, optional
+        The pass that each of them has to be multiplied by to be light: an albedo that is free of noise.
+    filtered : bool
+        Whether it is noisy; else it passes through, as light that the camera sees directly does.
+    """
+
+    names: tuple[str, ...]
+    factor: str | None = None
+    filtered: bool = True
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reader:
+    """What is known of one renderer's files.
+
+    Parameters
+    ----------
+    name : str
+        For ``--format``.
+    title : str
+        What messages call it.
+    recognises : callable
+        Whether an image was written by it.
+    passes : mapping of str to tuple of Source
+        Where each field of a frame is, or may be; the best first. Beside the fields there may be `HELPERS`.
+    switches : mapping of str to str
+        What to do in the renderer to have a field written, for those that users forget.
+    lights : tuple of Light
+        Their sum is the picture.
+    complete : callable, optional
+        Makes fields of what the passes hold, where that takes more than one of them.
+    """
+
+    name: str
+    title: str
+    recognises: Callable[[Image], bool]
+    passes: Mapping[str, tuple[Source, ...]]
+    switches: Mapping[str, str] = field(default_factory=dict)
+    lights: tuple[Light, ...] = ()
+    complete: Complete | None = None
+
+    def sources(self, found: Found) -> dict[str, tuple[Source, tuple[str, ...]]]:
+        """The source of each field that is there, and its channels; `ValueError` where one is there in part."""
+        sources = {}
+        for name, candidates in self.passes.items():
+            there = [(source, channels) for source in candidates if (channels := source.find(found))]
+            if there:
+                sources[name] = there[0]
+        return sources
+
+
+def has_attribute(image: Image, *starts: str) -> bool:
+    """Whether the header of an image has an attribute whose name begins like that."""
+    return any(name.startswith(starts) for part in image.parts for name in part.attributes)
+
+
+def text_attribute(image: Image, name: str) -> str:
+    """A text of an image's header; empty where there is none."""
+    kind, value = image.parts[0].attributes.get(name, ("", b""))
+    return value.decode(errors="replace") if kind == "string" else ""
+
+
+def without_edges(ids: Array) -> Array:
+    """Ids of an antialiased pass, where a pixel at an edge holds a mean of ids: it gets one of its neighbours'."""
+    values = np.asarray(ids, np.float64)
+    whole = (values == np.floor(values)) & (values >= 0) & (values < 2**32)
+    result = np.where(whole, values, 0)
+    if not whole.all():
+        padded = np.pad(result, 1)
+        height, width = values.shape
+        near = [padded[y : y + height, x : x + width] for y in range(3) for x in range(3)]
+        result = np.where(whole, result, np.max(near, axis=0))
+    return result.astype(np.uint32)
+
+
+def hashes(cryptomatte: Array) -> Array:
+    """The ids in the first layer of a Cryptomatte: the bits of the first of its numbers."""
+    return np.ascontiguousarray(cryptomatte[..., 0], np.float32).view(np.uint32)

@@ -1,0 +1,47 @@
+"""V-Ray's multichannel EXR: R G B A, and a layer for each render element, in Maya's names or in those of 3ds Max.
+
+``diffuse.red`` of Maya is ``VRayDiffuseFilter.R`` of 3ds Max. Z-depth is the distance along the camera's axis. Velocity
+is the way a point makes until the next frame.
+"""
+
+from __future__ import annotations
+
+from svgf_cl.io.image import Image
+from svgf_cl.io.readers.arnold import against_time, along_time, depth_of_hits
+from svgf_cl.io.readers.reader import Light, Pass, Reader, has_attribute, hashes, without_edges
+
+
+def recognises(image: Image) -> bool:
+    """Whether V-Ray says so, or a channel is called as only V-Ray does."""
+    named = any(name.startswith("VRay") or name.endswith(".red") for name in image.planes)
+    return named or has_attribute(image, "vrayInfo", "vray")
+
+
+VRAY = Reader(
+    name="vray",
+    title="V-Ray, multichannel EXR",
+    recognises=recognises,
+    passes={
+        "color": (Pass(("", "rgba", "RGB_color"), 3),),
+        "albedo": (Pass(("diffuse", "VRayDiffuseFilter", "diffuse_filter"), 3),),
+        "normal": (Pass(("normals", "VRayNormals", "bump_normals", "VRayBumpNormals"), 3),),
+        "depth": (Pass(("z_depth", "zDepth", "VRayZDepth", "Z"), 1, depth_of_hits),),
+        "position": (Pass(("world_position", "world_positions", "position"), 3),),
+        "motion": (Pass(("velocity", "VRayVelocity"), 2, against_time),),
+        "motion_to_next": (Pass(("velocity", "VRayVelocity"), 2, along_time),),
+        "id": (
+            Pass(("cryptomatte00", "VRayCryptomatte00"), 4, hashes),
+            Pass(("render_id", "VRayRenderID", "node_id", "VRayNodeID", "object_id", "VRayObjectID"), 1, without_edges),
+        ),
+    },
+    switches={
+        "albedo": "add the render element Diffuse (VRayDiffuseFilter)",
+        "normal": "add the render element Normals",
+        "depth": "add the render element Z-depth, without clamping",
+        "motion": "add the render element Velocity, without clamping, and turn motion blur off",
+    },
+    lights=(
+        Light(("lighting", "gi", "specular", "reflection", "refraction", "sss", "caustics", "atmospheric_effects")),
+        Light(("self_illumination", "background"), filtered=False),
+    ),
+)

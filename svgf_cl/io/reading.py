@@ -1,0 +1,274 @@
+"""`Reading`: how the files of a shot become frames, settled by its first file and by what the user says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from svgf_cl.camera import Camera, motion_from_cameras
+from svgf_cl.errors import FileError, FrameError, SvgfError
+from svgf_cl.frame import CHANNELS, REQUIRED, Frame
+from svgf_cl.io.image import Image
+from svgf_cl.io.look_alikes import advice, grouped
+from svgf_cl.io.readers import reader_called, reader_of
+from svgf_cl.io.readers.own import CHANNEL_NAMES, needed
+from svgf_cl.io.readers.passes import by_view_layer, called, plain
+from svgf_cl.io.readers.reader import HELPERS, Array, Found, Pass, Reader, Source, Values
+
+# Components that a field has at least.
+SIZES = {field: max(1, min(sizes)) for field, sizes in CHANNELS.items()} | HELPERS
+
+
+CAMERAS = "give the camera of each frame in cameras.json beside the frames, or with --cameras FILE"
+STILL = "if the camera and all things stand still, give --still-camera"
+
+
+@dataclass(frozen=True)
+class ReadAs:
+    """What a user says of files, where they do not tell it themselves, or tell something else.
+
+    Parameters
+    ----------
+    format : str, optional
+        The name of a reader; by default it is told from the first file.
+    view_layer : str, optional
+        Which one to read of a file that has several.
+    passes : mapping of str to str
+        Fields, or `HELPERS`, to the pass or channel that holds them.
+    motion_scale : (float, float)
+        What x and y of motion are multiplied by; -1 turns an axis round.
+    cameras : mapping of int to Camera
+        That of each frame by its number; by default they come from the files' headers.
+    still_camera : bool
+        Take all motion to be 0 where nothing tells it.
+    """
+
+    format: str | None = None
+    view_layer: str | None = None
+    passes: Mapping[str, str] = field(default_factory=dict)
+    motion_scale: tuple[float, float] = (1.0, 1.0)
+    cameras: Mapping[int, Camera] = field(default_factory=dict)
+    still_camera: bool = False
+
+    def __post_init__(self) -> None:
+        for name in self.passes:
+            if name not in SIZES:
+                raise SvgfError(f"--map: expected one of {', '.join(SIZES)} to be mapped, got {name!r}")
+
+
+@dataclass(frozen=True)
+class LightPass:
+    """A pass of a file that is a part of its picture.
+
+    Parameters
+    ----------
+    channels : tuple of str
+        Its red, green and blue.
+    factor : tuple of str
+        Channels of the pass that it is to be multiplied by; none where it is light as it is.
+    filtered : bool
+        Whether it is noisy.
+    """
+
+    channels: tuple[str, ...]
+    factor: tuple[str, ...]
+    filtered: bool
+
+
+class Reading:
+    """How the files of a shot become frames.
+
+    Parameters
+    ----------
+    path : Path
+        The first file, for errors.
+    image : Image
+        What it holds.
+    how : ReadAs
+    separate : mapping of str to tuple of str
+        Channels of fields that come from other files.
+
+    Raises
+    ------
+    FileError
+        The file has no view layer of that name or several to choose from, or lacks what was mapped.
+    """
+
+    def __init__(
+        self, path: Path, image: Image, how: ReadAs, separate: Mapping[str, tuple[str, ...]] | None = None
+    ) -> None:
+        self.how = how
+        self.reader: Reader = reader_called(how.format) if how.format else reader_of(image)
+        self._layers = by_view_layer(image.planes)
+        self._channels = tuple(image.planes)
+        self.view_layer = self._chosen_layer(path)
+        try:
+            self.sources = self.reader.sources(self._found) | self._mapped(separate or {})
+        except ValueError as error:
+            raise FileError(f"{path}: {error}") from error
+
+    def frame(
+        self, path: Path, planes: Mapping[str, Array], camera: Camera | None = None, previous: Camera | None = None
+    ) -> Frame:
+        """Put the frame of a file together.
+
+        Parameters
+        ----------
+        path : Path
+        planes : mapping of str to (H, W) array
+            Its channels.
+        camera, previous : Camera, optional
+            Those of this frame and of the one before, for motion and depth that the file does not tell.
+
+        Raises
+        ------
+        FileError
+            A field is missing, or of a wrong value.
+        """
+        values = self.values(path, planes)
+        if self.reader.complete:
+            values = self.reader.complete(values, camera)
+        values |= derived(values, camera, previous, still=self.how.still_camera)
+        if "emission" not in values and (shining := [light for light in self.lights if not light.filtered]):
+            values["emission"] = sum_of(np.stack([planes[name] for name in light.channels], -1) for light in shining)
+        missing = [name for name in REQUIRED if name not in values]
+        if not values.keys() & {"color", "direct", "indirect"}:
+            missing = ["color", *missing]
+        if missing:
+            raise self._absent(path, missing, planes)
+        try:
+            frame = Frame(**{name: value for name, value in values.items() if name in CHANNELS})
+            frame.check_presence()
+        except FrameError as error:
+            raise FileError(f"{path}: {error}; channels found: {' '.join(planes)}") from error
+        return frame
+
+    def motion_to_next(self, path: Path, planes: Mapping[str, Array]) -> npt.NDArray[np.float32] | None:
+        """The motion to the next frame, (H, W, 2), where the file tells it."""
+        if "motion_to_next" not in self.sources:
+            return None
+        return np.asarray(self._value(path, planes, "motion_to_next"), np.float32)
+
+    def values(self, path: Path, planes: Mapping[str, Array]) -> Values:
+        """What the passes of a file say of the frame; errors as of `frame`."""
+        there = [name for name, (_, channels) in self.sources.items() if planes.keys() & set(channels)]
+        return {name: self._value(path, planes, name) for name in there if name != "motion_to_next"}
+
+    def _value(self, path: Path, planes: Mapping[str, Array], name: str) -> Array:
+        source, channels = self.sources[name]
+        lost = [channel for channel in channels if channel not in planes]
+        if lost:
+            raise self._absent(path, [name], planes)
+        try:
+            value = source.read([planes[channel] for channel in channels])
+        except ValueError as error:
+            raise FileError(f"{path}: {error}") from error
+        if name in ("motion", "motion_to_next"):
+            scale = np.ones(value.shape[-1], np.float32)
+            scale[:2] = self.how.motion_scale
+            return np.asarray(value * scale if (scale != 1).any() else value, np.float32)
+        return value if name == "id" else np.asarray(value, np.float32)
+
+    @cached_property
+    def picture(self) -> tuple[str, ...]:
+        """The channels of the picture; ``R G B`` where the file has its light in parts alone."""
+        return self.sources["color"][1][:3] if "color" in self.sources else CHANNEL_NAMES["color"]
+
+    @cached_property
+    def lights(self) -> tuple[LightPass, ...]:
+        """The passes that the picture is the sum of, as far as the file has them; none where none of them is noisy."""
+        passes, found = self._layers.get(self.view_layer, {}), []
+        for light in self.reader.lights:
+            factor = passes.get(plain(light.factor), ()) if light.factor else ()
+            if light.factor and len(factor) < 3:
+                continue
+            there = [passes[name] for name in map(plain, light.names) if len(passes.get(name, ())) >= 3]
+            found += [LightPass(channels[:3], factor[:3], light.filtered) for channels in there]
+        return tuple(found) if any(light.filtered for light in found) else ()
+
+    @property
+    def _found(self) -> Found:
+        return Found(self._channels, self._layers.get(self.view_layer, {}))
+
+    def _chosen_layer(self, path: Path) -> str:
+        """The name of the view layer that is read."""
+        having = [
+            name
+            for name, passes in self._layers.items()
+            if any(source.find(Found((), passes)) for source in self.reader.passes["color"])
+        ]
+        wanted = self.how.view_layer
+        if wanted is not None and wanted not in self._layers:
+            raise FileError(f"{path}: expected a view layer {wanted!r}, found {', '.join(having) or 'none'}")
+        if wanted is None and len(having) > 1:
+            raise FileError(f"{path}: expected one view layer, found {', '.join(having)}; choose with --view-layer")
+        return wanted if wanted is not None else "".join(having)
+
+    def _mapped(self, separate: Mapping[str, tuple[str, ...]]) -> dict[str, tuple[Source, tuple[str, ...]]]:
+        """The sources that the user names; what is known of the renderer's own holds for them, too."""
+        found: dict[str, tuple[Source, tuple[str, ...]]] = {}
+        mapped = {name: called(wanted, self._channels, self.view_layer) for name, wanted in self.how.passes.items()}
+        for name, channels in {**mapped, **separate}.items():
+            size, what = SIZES[name], self.how.passes.get(name, "in its file")
+            if len(channels) < size:
+                raise ValueError(f"{name}: expected a pass of {size} components, found {len(channels)} ({what})")
+            usual = next(iter(self.reader.passes.get(name, ())), None)
+            source = Pass((name,), size, usual.convert if usual else None)
+            found[name] = source, source.used(channels)
+        return found
+
+    def _absent(self, path: Path, fields: list[str], planes: Mapping[str, Array]) -> FileError:
+        """The error for fields that are missing; it says what the file has, and what to do in the renderer."""
+        switches = self.reader.switches
+        lacks_cameras = {"depth", "motion"} & set(fields) and {"position", "distance"} & self.sources.keys()
+        hints = [CAMERAS] if lacks_cameras else [switches[field] for field in fields if field in switches]
+        unknown = {field: needed(field) for field in fields if field not in switches and field in CHANNEL_NAMES}
+        hints += [text] if (text := advice(planes, unknown)) else []
+        hints += [STILL] if "motion" in fields else []
+        wanted = " ".join(name for names in unknown.values() for name in names)
+        expected = f"channels {wanted}" if unknown else f"{', '.join(fields)} in a file of {self.reader.title}"
+        return FileError("; ".join([f"{path}: expected {expected}, found {grouped(planes)}", *dict.fromkeys(hints)]))
+
+
+def sum_of(pictures: Iterable[Array]) -> npt.NDArray[np.float32]:
+    """The sum of pictures (H, W, 3)."""
+    total: npt.NDArray[np.float32] = np.sum(list(pictures), axis=0, dtype=np.float32)
+    return total
+
+
+def derived(values: Values, camera: Camera | None, previous: Camera | None, *, still: bool) -> Values:
+    """What can be computed of depth and motion that are missing.
+
+    Parameters
+    ----------
+    values : Values
+        What is there.
+    camera, previous : Camera, optional
+        Those of the frame and of the one before it.
+    still : bool
+        Whether nothing moves.
+    """
+    found: Values = {}
+    position, depth = values.get("position"), values.get("depth")
+    missed = ~np.any(values["normal"], axis=-1) if "normal" in values else np.False_
+    if depth is None and camera is not None:
+        if position is not None:
+            depth = camera.depth_at(position)
+        elif "distance" in values:
+            depth = camera.depth_of(values["distance"])
+    if depth is not None:
+        depth = np.where(missed | ~(depth > 0), np.inf, depth) if "depth" not in values else depth
+        found["depth"] = np.asarray(depth, np.float32)
+    if "motion" in values or depth is None:
+        return found
+    if camera is not None:
+        seen = np.where(missed, np.inf, depth)
+        found["motion"] = motion_from_cameras(camera, previous or camera, depth=seen, position=position)
+    elif still:
+        found["motion"] = np.zeros((*depth.shape, 2), np.float32)
+    return found

@@ -1,0 +1,67 @@
+"""Passes in files of their own, one file a pass and frame, as ``--albedo albedo.####.exr`` names them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from svgf_cl.errors import FileError
+from svgf_cl.io.exr import read_image
+from svgf_cl.io.image import Image, Plane
+from svgf_cl.io.readers.passes import by_view_layer
+from svgf_cl.io.sequence import find_frames, number_of
+
+
+@dataclass(frozen=True)
+class SeparateFiles:
+    """The files of some fields, by the numbers of their frames.
+
+    Parameters
+    ----------
+    paths : mapping of str to (mapping of int to Path)
+        For each field its files.
+    """
+
+    paths: Mapping[str, Mapping[int, Path]]
+
+    @classmethod
+    def of(cls, patterns: Mapping[str, Path]) -> SeparateFiles:
+        """Find the files of fields by a pattern, a folder or a file each; errors as of `find_frames`."""
+        return cls(
+            {
+                field: {number_of(path): path for path in find_frames([pattern], allow_gaps=True)}
+                for field, pattern in patterns.items()
+            }
+        )
+
+    def channels(self, number: int) -> dict[str, tuple[str, ...]]:
+        """The channels of each field, as `planes` calls them, told from the files of one frame."""
+        return {field: tuple(self._planes(field, number)) for field in self.paths}
+
+    def planes(self, number: int) -> dict[str, Plane]:
+        """The channels of all fields of a frame.
+
+        Raises
+        ------
+        FileError
+            The frame has no file of a field, or that has no pass or several.
+        """
+        return {name: plane for field in self.paths for name, plane in self._planes(field, number).items()}
+
+    def _planes(self, field: str, number: int) -> dict[str, Plane]:
+        files = self.paths[field]
+        if number not in files:
+            example = next(iter(files.values()))
+            raise FileError(f"{example}: expected a file of {field} for frame {number} beside it, found none")
+        image = read_image(files[number])
+        return {f"{field} {index}": image.planes[name] for index, name in enumerate(pass_of(files[number], image))}
+
+
+def pass_of(path: Path, image: Image) -> Sequence[str]:
+    """The channels of a file's only pass, or of its picture."""
+    passes = [(name, channels) for layer in by_view_layer(image.planes).values() for name, channels in layer.items()]
+    pictures = [channels for name, channels in passes if not name]
+    if len(passes) != 1 and len(pictures) != 1:
+        raise FileError(f"{path}: expected one pass, or R G B, found {' '.join(image.planes)}")
+    return pictures[0] if pictures else passes[0][1]

@@ -1,0 +1,196 @@
+"""`Job`: a shot's files in, pictures out; all of it, or a stretch that another machine's stretches fit to."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from svgf_cl.errors import FileError
+from svgf_cl.filters.filter import Filter
+from svgf_cl.filters.kalman import STANDARD_ERROR
+from svgf_cl.io.display import to_bytes
+from svgf_cl.io.display import write_image as write_png
+from svgf_cl.io.exr import write_image
+from svgf_cl.io.image import Image
+from svgf_cl.io.layers import RGB
+from svgf_cl.io.patterns import has_number, numbered
+from svgf_cl.io.pictures import channels, denoised_file, holds
+from svgf_cl.io.reading import ReadAs
+from svgf_cl.io.separate import SeparateFiles
+from svgf_cl.io.sequence import number_of
+from svgf_cl.io.shot import Shot, ShotFrame
+from svgf_cl.io.window import placed
+from svgf_cl.lights import Denoised, LightsDenoiser
+
+Look = Callable[[Shot, int, ShotFrame], None]
+
+
+@dataclass(frozen=True)
+class Style:
+    """What is written of each frame.
+
+    Parameters
+    ----------
+    plain : bool
+        Nothing but the picture, as ``R G B``.
+    layer : str, optional
+        Where denoised channels go, beside the noisy ones; by default they take their place.
+    png : bool
+        A tone-mapped PNG too.
+    exposure : float
+        Stops by which that is brightened.
+    """
+
+    plain: bool = False
+    layer: str | None = None
+    png: bool = False
+    exposure: float = 0.0
+
+
+@dataclass(frozen=True)
+class Job:
+    """How a shot is denoised; another process can do a part of it.
+
+    Parameters
+    ----------
+    paths : tuple of Path
+        The frames of the shot, in order.
+    targets : tuple of Path
+        The file to write for each.
+    settings : Filter
+    how : ReadAs
+        How files are read.
+    separate : SeparateFiles
+        Further files of each frame.
+    style : Style
+        What is written.
+    lights : bool
+        Whether light passes are denoised, too.
+    """
+
+    paths: tuple[Path, ...]
+    targets: tuple[Path, ...]
+    settings: Filter
+    how: ReadAs = field(default_factory=ReadAs)
+    separate: SeparateFiles = field(default_factory=lambda: SeparateFiles({}))
+    style: Style = field(default_factory=Style)
+    lights: bool = True
+
+    def part(self, places: range) -> Job:
+        """The same job for some of its frames."""
+        return replace(
+            self, paths=self.paths[places.start : places.stop], targets=self.targets[places.start : places.stop]
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Done:
+    """A frame that is done.
+
+    Parameters
+    ----------
+    source : ShotFrame
+        What was read of it.
+    target : Path
+    kept : bool
+        Whether the file was there and the same.
+    times : mapping of str to float
+        Milliseconds of each pass on the device.
+    """
+
+    source: ShotFrame
+    target: Path
+    kept: bool
+    times: Mapping[str, float]
+
+
+def run(job: Job, warm_up: int = 0, look: Look | None = None) -> Iterator[Done]:
+    """Denoise the frames of a job and write them, one after the other.
+
+    Parameters
+    ----------
+    job : Job
+    warm_up : int
+        So many of the first frames are filtered, so that those behind them have a past, and not written.
+    look : callable, optional
+        Is given every frame before it is filtered, with the shot and its index.
+
+    Yields
+    ------
+    Done
+        Of each frame that is written.
+
+    Raises
+    ------
+    FileError
+        A file cannot be read or written, or lacks a field.
+    SvgfError
+        As of `Denoiser.denoise`.
+    """
+    shot = Shot(job.paths, job.how, job.separate)
+    denoiser = LightsDenoiser(shot.shape, job.settings)
+    for index, target in enumerate(job.targets):
+        source = shot.read(index)
+        if look:
+            look(shot, index, source)
+        if index in shot.cuts:
+            denoiser.reset()
+        denoised = denoiser.denoise(source.frame, source.lights if job.lights else ())
+        if index >= warm_up:
+            kept = write(target, result(shot, source, denoised, job.style))
+            if job.style.png:
+                shown = placed(denoised.picture, shot.window, source.image.windows.display, 0.0)
+                write_png(png_of(target), to_bytes(shown, job.style.exposure))
+            yield Done(source, target, kept, denoiser.profile())
+
+
+def result(shot: Shot, source: ShotFrame, denoised: Denoised, style: Style) -> Image:
+    """The file of a frame that is denoised: what its own file holds, with what was made in its place or beside it."""
+    own = source.image.windows.data
+    planes = channels(placed(denoised.picture, shot.window, own, 0.0), RGB if style.plain else shot.reading.picture)
+    for names, light in {} if style.plain else denoised.lights.items():
+        planes |= channels(placed(light, shot.window, own, 0.0), names)
+    if denoised.standard_error is not None:
+        planes[STANDARD_ERROR] = placed(denoised.standard_error, shot.window, own, 0.0)
+    if style.layer:
+        planes = {in_layer(name, shot.reading.view_layer, style.layer): plane for name, plane in planes.items()}
+    return denoised_file(planes, source.image, plain=style.plain)
+
+
+def in_layer(channel: str, view_layer: str, layer: str) -> str:
+    """A channel's name in another layer, which takes the place of its view layer where it has one."""
+    return f"{layer}.{channel.removeprefix(f'{view_layer}.' if view_layer else '')}"
+
+
+def write(target: Path, image: Image) -> bool:
+    """Write the file of a frame; return whether it was there and held the same, bit by bit."""
+    kept = holds(target, image)
+    if not kept:
+        write_image(target, image)
+    return kept
+
+
+def png_of(target: Path) -> Path:
+    """The PNG beside a picture's file."""
+    return target.with_suffix(".png")
+
+
+def target_paths(sources: Sequence[Path], output: Path) -> list[Path]:
+    """Name the file to write for each frame: in a folder under the frame's own name, or by a pattern with its number.
+
+    Raises
+    ------
+    FileError
+        One would replace a frame.
+    """
+    if has_number(output):
+        targets = [numbered(output, number_of(source)) for source in sources]
+    else:
+        targets = [output / f"{s.stem if s.suffix.lower() == '.exr' else s.name}.exr" for s in sources]
+    read = {os.path.realpath(source) for source in sources}
+    for target, source in zip(targets, sources, strict=True):
+        if os.path.realpath(target) in read:
+            raise FileError(f"{target}: expected an output folder other than the input's, got {source.parent}")
+    return targets

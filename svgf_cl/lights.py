@@ -1,0 +1,169 @@
+"""`LightsDenoiser`: denoises a picture by the light passes that it is the sum of, so that they still add up to it.
+
+A pass such as Blender's DiffDir is light before it was multiplied by an albedo that has no noise, DiffCol. It is
+filtered as it is and multiplied afterwards: textures never pass through the filter, and shadows of direct light are
+not blurred by the noise of indirect light. What the picture has beyond the passes of its file is filtered as one more
+light.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from svgf_cl.denoiser import Denoiser
+from svgf_cl.filters.filter import Filter
+from svgf_cl.filters.kalman import STANDARD_ERROR
+from svgf_cl.frame import LUMINANCE, Frame, Shape
+from svgf_cl.io.shot import Light
+
+Picture = npt.NDArray[np.float32]
+Channels = tuple[str, ...]
+
+# Passes in 16 bits add up to the picture but for this share of the light: each is rounded by up to 2^-12 of its size,
+# and so are the factors and the picture.
+ROUNDING = 2.0**-9
+LEAST = 1e-6  # a difference that is nothing, where there is no light
+# Of pixels that are darker than the sum of their lights: where they are more, the passes are not parts of the picture.
+STRAY = 0.01
+WHOLE, REST = ("picture",), ("rest",)
+
+
+@dataclass(frozen=True, eq=False)
+class Denoised:
+    """What was made of a frame.
+
+    Parameters
+    ----------
+    picture : (H, W, 3) float32
+        Linear HDR radiance.
+    lights : mapping of tuple of str to (H, W, 3) float32
+        The denoised passes, by their channels; their sum, each times its factor, is the picture.
+    standard_error : (H, W) float32, optional
+        Of the picture's luminance, where the filter tells it.
+    """
+
+    picture: Picture
+    lights: Mapping[Channels, Picture]
+    standard_error: npt.NDArray[np.float32] | None = None
+
+
+class LightsDenoiser:
+    """Denoises frames of one size, with the light passes that their pictures are the sum of.
+
+    Parameters
+    ----------
+    shape : (int, int)
+        (height, width) in pixels.
+    settings : Filter
+        For all lights alike.
+    """
+
+    def __init__(self, shape: Shape, settings: Filter) -> None:
+        self._shape, self._settings = shape, settings
+        self._denoisers: dict[Channels, Denoiser] = {}
+        self._are_parts: bool | None = None
+
+    def denoise(self, frame: Frame, lights: Sequence[Light] = ()) -> Denoised:
+        """Denoise the next frame.
+
+        Parameters
+        ----------
+        frame : Frame
+        lights : sequence of Light
+            What its picture is the sum of; none to filter the picture as a whole.
+
+        Raises
+        ------
+        SvgfError
+            As `Denoiser.denoise`.
+        """
+        if not lights or not self._checked(frame, lights):
+            picture = self._filtered(WHOLE, frame)
+            return Denoised(picture, {}, self._error(WHOLE))
+        made = {light.channels: self._light(frame, light) for light in lights if light.filtered}
+        terms = [multiplied(made.get(light.channels, light.radiance), light.factor) for light in lights]
+        rest = remainder(frame, lights)
+        terms.append(np.minimum(rest, 0.0))
+        if rest.max(initial=0.0) > 0.0 or REST in self._denoisers:
+            terms.append(self._filtered(REST, single(frame, np.maximum(rest, 0.0), frame.albedo)))
+        return Denoised(np.sum(terms, axis=0, dtype=np.float32), made, self._error_of_sum(lights))
+
+    def reset(self) -> None:
+        """Forget the past, as at a cut."""
+        for denoiser in self._denoisers.values():
+            denoiser.reset()
+
+    def profile(self) -> dict[str, float]:
+        """Milliseconds on the device of each pass of the last frame, all lights together."""
+        total: dict[str, float] = {}
+        for denoiser in self._denoisers.values():
+            for name, time in denoiser.profile().items():
+                total[name] = total.get(name, 0.0) + time
+        return total
+
+    def _light(self, frame: Frame, light: Light) -> Picture:
+        """A light, filtered; one that has been dark so far takes no filter."""
+        if light.channels not in self._denoisers and not light.radiance.any():
+            return light.radiance
+        albedo = frame.albedo if light.factor is None else None
+        return self._filtered(light.channels, single(frame, light.radiance, albedo))
+
+    def _filtered(self, key: Channels, frame: Frame) -> Picture:
+        if key not in self._denoisers:
+            self._denoisers[key] = Denoiser(self._shape, settings=self._settings)
+        result: Picture = self._denoisers[key].denoise(frame)
+        return result
+
+    def _checked(self, frame: Frame, lights: Sequence[Light]) -> bool:
+        """Whether the passes are parts of the picture, told from the first frame; a warning where they are not."""
+        if self._are_parts is None:
+            share = float((remainder(frame, lights).min(axis=-1) < 0.0).mean())
+            self._are_parts = share <= STRAY
+            if not self._are_parts:
+                warnings.warn(
+                    f"the light passes add up to more than the picture in {100 * share:.0f} % of the pixels, so they"
+                    " are left as they are, and the picture is denoised as a whole",
+                    stacklevel=3,
+                )
+        return self._are_parts
+
+    def _error(self, key: Channels) -> npt.NDArray[np.float32] | None:
+        denoiser = self._denoisers.get(key)
+        return denoiser.stage(STANDARD_ERROR) if denoiser and STANDARD_ERROR in denoiser.stages else None
+
+    def _error_of_sum(self, lights: Sequence[Light]) -> npt.NDArray[np.float32] | None:
+        """The standard error of the sum of lights, whose noise is independent."""
+        factors = {light.channels: light.factor for light in lights}
+        squares = []
+        for key in self._denoisers:
+            error, factor = self._error(key), factors.get(key)
+            if error is not None:
+                squares.append(
+                    np.square(error if factor is None else error * (factor @ np.array(LUMINANCE, np.float32)))
+                )
+        return np.sqrt(np.sum(squares, axis=0, dtype=np.float32)) if squares else None
+
+
+def single(frame: Frame, light: Picture, albedo: Picture | None) -> Frame:
+    """A frame of one light."""
+    return Frame(color=light, normal=frame.normal, depth=frame.depth, motion=frame.motion, albedo=albedo, id=frame.id)
+
+
+def multiplied(light: Picture, factor: Picture | None) -> Picture:
+    """A pass's part in the picture."""
+    return light if factor is None else light * factor
+
+
+def remainder(frame: Frame, lights: Sequence[Light]) -> Picture:
+    """What the picture has beyond the sum of its lights, (H, W, 3); 0 where that is what rounding leaves."""
+    terms = [multiplied(light.radiance, light.factor) for light in lights]
+    if frame.color is None:
+        return np.zeros_like(terms[0])
+    rest: Picture = frame.color - np.sum(terms, axis=0, dtype=np.float32)
+    size = np.sum(np.abs(terms), axis=0, dtype=np.float32) + np.abs(frame.color)
+    return np.where(np.abs(rest) > ROUNDING * size + LEAST, rest, np.float32(0.0))
