@@ -247,33 +247,31 @@ def motion_from_cameras(
     """
     if position is not None:
         points = _image("position", position, (3,))
-        missed = ~np.isfinite(points).all(axis=-1)
+        points = np.where(np.isfinite(points), points, math.nan)
     elif depth is not None:
         points = camera.unproject(_image("depth", depth, ()))
-        missed = np.zeros(points.shape[:2], bool)
     else:
         raise ArgumentError("motion_from_cameras(depth)", "an array, unless position is one", "nothing")
+    missed = np.isnan(points.sum(axis=-1))
     if depth is not None:
         plane = _image("depth", depth, (), points.shape[:2])
         missed |= ~(np.isfinite(plane) & (plane > 0.0))
     now, depth_now = camera.project(points)
     then, depth_then = previous.project(points)
     motion = np.concatenate([then - now, (depth_then - depth_now)[..., None]], axis=-1)
-    motion[np.isnan(motion).any(axis=-1)] = math.nan
-    motion[missed] = _motion_at_infinity(camera, previous, points.shape[:2])[missed]
+    motion[np.isnan(motion.sum(axis=-1))] = math.nan
+    if missed.any():
+        motion[missed] = _motion_at_infinity(camera, previous, camera.rays(missed.shape)[missed])
     return motion.astype(np.float32)
 
 
-def _motion_at_infinity(camera: Camera, previous: Camera, shape: tuple[int, int]) -> Array:
-    """The motion (H, W, 3) of points infinitely far away, in the direction of each pixel's centre."""
-    motion = np.zeros((*shape, 3))
+def _motion_at_infinity(camera: Camera, previous: Camera, rays: Array) -> Array:
+    """The motion (N, 3) of points infinitely far away along `rays` (N, 3) of the camera's view space."""
     if camera.orthographic or previous.orthographic:  # all rays go one way: the background has no place in the image
-        return motion
+        return np.zeros_like(rays)
     rotation = previous.world_to_view[:3, :3] @ np.linalg.inv(camera.world_to_view[:3, :3])
-    rays = camera.rays(shape)
-    motion[..., :2] = previous._pixels(rays @ rotation.T) - camera._pixels(rays)
-    motion[np.isnan(motion).any(axis=-1)] = math.nan
-    return motion
+    motion = previous._pixels(rays @ rotation.T) - camera._pixels(rays)
+    return np.concatenate([motion, 0.0 * motion[:, :1]], axis=-1)  # NaN stays NaN
 
 
 def view_axes(argument: str, axes: str) -> Array:
