@@ -100,7 +100,7 @@ class Camera:
         """
         height, width = _checked_shape("Camera.from_fov(shape)", shape)
         sides = {"x": width, "y": height, "smaller": min(shape), "larger": max(shape)}
-        if fov_axis not in sides:
+        if fov_axis not in tuple(sides):
             raise ArgumentError("Camera.from_fov(fov_axis)", f"one of {', '.join(sides)}", shown(fov_axis))
         if not 0.0 < fov_degrees < 180.0:
             raise ArgumentError("Camera.from_fov(fov_degrees)", "an angle in (0, 180) degrees", shown(fov_degrees))
@@ -119,14 +119,16 @@ class Camera:
         """Make a camera from the attributes ``worldToCamera`` and ``worldToNDC`` of an OpenEXR file.
 
         The matrices are as in the file: a row (x, y, z, 1) of world space times one is a point in the camera's space or
-        in normalised device coordinates (NDC), which are yet to be divided by w. The camera's x points to the right or
-        left, its y up. Renderers differ in the rest, and the numbers tell which way it is:
+        in normalised device coordinates (NDC), which are yet to be divided by w. By OpenEXR's definition the camera's x
+        points to the right, y up and z forward, and NDC count from (0, 0) in the upper left corner of the display
+        window to (1, 1). Renderers differ in this, and the numbers tell how:
 
-        - A camera in perspective looks along the z for which w is positive.
-        - NDC count from 0 to 1 across the display window if the optical axis is nearer to its (0.5, 0.5) than to
-          (0, 0) (OpenEXR's definition; RenderMan), else from -1 to 1 (Arnold); y points down or up.
-        - NDC that have one unit along both sides of an image that is not square span its smaller side (pbrt).
+        - NDC count from -1 to 1 if the optical axis is nearer to their (0, 0) than to (0.5, 0.5) (Arnold, RenderMan,
+          Mantra). Their x and y may point either way.
+        - NDC from 0 to 1 with one unit along both sides of an image that is not square span its smaller side (pbrt).
         - Matrices may be transposed (pbrt).
+        - A camera looks along -z if w is positive there and its matrix does not mirror (OpenGL's). If it does mirror,
+          the camera looks along z, and w is negative in front of it (Mantra).
 
         Parameters
         ----------
@@ -139,6 +141,10 @@ class Camera:
         ArgumentError
             The matrices are not those of one camera in perspective or of an orthographic one, or its optical axis is
             too far from the middle of the image to tell how NDC count.
+
+        Notes
+        -----
+        Headers hold single precision: a camera at 5e5 is placed to within some hundredths of a unit.
 
         References
         ----------
@@ -241,38 +247,36 @@ def motion_from_cameras(
     """
     if position is not None:
         points = _image("position", position, (3,))
-        missed = ~np.isfinite(points).all(axis=-1)
+        points = np.where(np.isfinite(points), points, math.nan)
     elif depth is not None:
         points = camera.unproject(_image("depth", depth, ()))
-        missed = np.zeros(points.shape[:2], bool)
     else:
         raise ArgumentError("motion_from_cameras(depth)", "an array, unless position is one", "nothing")
+    missed = np.isnan(points.sum(axis=-1))
     if depth is not None:
         plane = _image("depth", depth, (), points.shape[:2])
         missed |= ~(np.isfinite(plane) & (plane > 0.0))
     now, depth_now = camera.project(points)
     then, depth_then = previous.project(points)
     motion = np.concatenate([then - now, (depth_then - depth_now)[..., None]], axis=-1)
-    motion[np.isnan(motion).any(axis=-1)] = math.nan
-    motion[missed] = _motion_at_infinity(camera, previous, points.shape[:2])[missed]
+    motion[np.isnan(motion.sum(axis=-1))] = math.nan
+    if missed.any():
+        motion[missed] = _motion_at_infinity(camera, previous, camera.rays(missed.shape)[missed])
     return motion.astype(np.float32)
 
 
-def _motion_at_infinity(camera: Camera, previous: Camera, shape: tuple[int, int]) -> Array:
-    """The motion (H, W, 3) of points infinitely far away, in the direction of each pixel's centre."""
-    motion = np.zeros((*shape, 3))
+def _motion_at_infinity(camera: Camera, previous: Camera, rays: Array) -> Array:
+    """The motion (N, 3) of points infinitely far away along `rays` (N, 3) of the camera's view space."""
     if camera.orthographic or previous.orthographic:  # all rays go one way: the background has no place in the image
-        return motion
+        return np.zeros_like(rays)
     rotation = previous.world_to_view[:3, :3] @ np.linalg.inv(camera.world_to_view[:3, :3])
-    rays = camera.rays(shape)
-    motion[..., :2] = previous._pixels(rays @ rotation.T) - camera._pixels(rays)
-    motion[np.isnan(motion).any(axis=-1)] = math.nan
-    return motion
+    motion = previous._pixels(rays @ rotation.T) - camera._pixels(rays)
+    return np.concatenate([motion, 0.0 * motion[:, :1]], axis=-1)  # NaN stays NaN
 
 
 def view_axes(argument: str, axes: str) -> Array:
     """The (4, 4) matrix from a camera's space whose `axes` have this name to view space."""
-    if axes not in AXES:
+    if axes not in tuple(AXES):
         raise ArgumentError(argument, f"one of {', '.join(AXES)}", shown(axes))
     return np.diag((*AXES[axes], 1.0))
 

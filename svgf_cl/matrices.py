@@ -55,19 +55,21 @@ def projection_of(world_to_camera: npt.ArrayLike, world_to_ndc: npt.ArrayLike, s
         They are not those of one camera.
     """
     matrix, projection = _consistent(world_to_camera, world_to_ndc)
-    orthographic = bool(abs(projection[2, 3]) < 0.5)
-    forward = 1.0 if orthographic else math.copysign(1.0, projection[2, 3])
-    scale, signs = np.abs(projection[[0, 1], [0, 1]]), np.sign(projection[[0, 1], [0, 1]])
-    axis = projection[3, :2] if orthographic else forward * projection[2, :2]
+    w_of_z, sides = projection[2, 3], np.array((shape[1], shape[0]), np.float64)
+    orthographic = bool(abs(w_of_z) < 0.5)
+    looks_back = bool(w_of_z < -0.5 and np.linalg.det(matrix[:3, :3]) > 0.0)
+    forward = -1.0 if looks_back else 1.0
+    # How fast NDC grow along the camera's x and y at depth 1, and the NDC of its axis.
+    slope = projection[[0, 1], [0, 1]] / (1.0 if orthographic else w_of_z * forward)
+    axis = projection[3, :2] if orthographic else projection[2, :2] / w_of_z
     origin = _origin(axis)
-    sides = np.array((shape[1], shape[0]), np.float64)
-    is_square = math.isclose(*scale, rel_tol=1e-4)
-    per_unit = (sides.min() if is_square else sides) * (0.5 if origin == 0.0 else 1.0)
-    focal = scale * per_unit
-    # Down in the image is up or down in NDC, and the opposite of the camera's y.
-    center = (sides - 1.0) / 2.0 + (axis - origin) * per_unit * (1.0, -signs[1])
-    flips = np.diag((signs[0], -1.0, forward, 1.0))
-    return Projection(flips @ matrix.T, (focal[0], focal[1]), (center[0], center[1]), orthographic)
+    is_uniform = origin == 0.5 and math.isclose(*np.abs(slope), rel_tol=1e-4)
+    per_unit = (sides.min() if is_uniform else sides) * (0.5 if origin == 0.0 else 1.0)
+    focal = np.abs(slope) * per_unit
+    # The camera's x points to the right and its y up, whichever way those of NDC point.
+    center = (sides - 1.0) / 2.0 + (axis - origin) * per_unit * np.sign(slope) * (1.0, -1.0)
+    to_view = np.diag((1.0, -1.0, forward, 1.0))
+    return Projection(to_view @ matrix.T, (focal[0], focal[1]), (center[0], center[1]), orthographic)
 
 
 def _origin(axis: Array) -> float:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
+import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from scripts import pass_table, scene_description
 from svgf_cl.device import apart
 from svgf_cl.filters.formats import HALF_MAX
-from svgf_cl.io import cache, exr, frames
+from svgf_cl.io import cache, cameras, exr, frames
 from svgf_cl.oracle import temporal
 from svgf_cl_tracer import panorama
 from svgf_cl_tracer.description import document
@@ -67,3 +70,33 @@ def test_the_tables_of_passes_are_up_to_date() -> None:
 def test_a_page_without_marks_is_refused() -> None:
     with pytest.raises(ValueError, match="expected"):
         pass_table.page("no marks")
+
+
+def examples(page: str, section: str, language: str) -> list[str]:
+    """The blocks of code in a section of a page."""
+    text = (ROOT / "docs" / page).read_text().split(f"\n## {section}\n")[1].split("\n## ")[0]
+    return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
+
+
+def test_the_lines_on_motion_from_cameras_compute_it() -> None:
+    depth = np.random.default_rng(0).uniform(1.0, 5.0, (36, 64))
+    matrix, previous = np.eye(4), np.eye(4)
+    matrix[:3, 3], previous[:3, 3] = (1.0, 2.0, 3.0), (1.2, 2.0, 3.3)
+    previous[:3, :3] = ((0.96, 0.0, 0.28), (0.0, 1.0, 0.0), (-0.28, 0.0, 0.96))
+    call, lines = examples("conventions.md", "Motion from cameras", "python")
+    by_call = {"depth": depth, "matrix": matrix, "previous_matrix": previous}
+    exec(call, by_call)
+    camera, before = by_call["camera"], by_call["previous"]
+    by_lines = {"depth": depth, "now": camera.world_to_view, "before": before.world_to_view, "f": camera.focal[0]}
+    by_lines.update(zip(("cx", "cy"), camera.center, strict=True))
+    exec(lines, by_lines)
+    assert np.abs(by_call["motion"][..., :2]).max() > 1.0
+    np.testing.assert_allclose(by_call["motion"], by_lines["motion"], atol=1e-5)
+
+
+def test_the_file_of_cameras_in_the_page_is_one(tmp_path: Path) -> None:
+    (text,) = examples("conventions.md", "Motion from cameras", "json")
+    (tmp_path / cameras.NAME).write_text(text)
+    assert list(cameras.read_cameras(tmp_path / cameras.NAME)) == [
+        each["frame"] for each in json.loads(text)["cameras"]
+    ]

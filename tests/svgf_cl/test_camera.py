@@ -152,7 +152,7 @@ def test_a_camera_keeps_its_own_matrix() -> None:
 
 
 def header(
-    camera: Camera, *, forward: int = 1, low: int = 0, down: bool = True, square: bool = False
+    camera: Camera, *, forward: int = 1, low: int = 0, down: bool = True, square: bool = False, w: int = 1
 ) -> tuple[np.ndarray, np.ndarray]:
     """The matrices worldToCamera and worldToNDC of a renderer with these habits, for rows, in single precision."""
     to_camera = np.diag((1.0, -1.0, forward, 1.0)) @ camera.world_to_view
@@ -172,7 +172,7 @@ def header(
     if camera.orthographic:
         projection[3, :2], projection[3, 3] = from_middle, 1.0
     else:
-        projection[2, :2], projection[2, 3] = from_middle * forward, forward
+        projection[2, :2], projection[2, 3] = from_middle * forward, w * forward
     return to_camera.T.astype(np.float32), (to_camera.T @ projection).astype(np.float32)
 
 
@@ -180,7 +180,8 @@ HABITS = {
     "OpenEXR's definition": {},
     "Arnold": {"low": -1, "down": False},
     "pbrt": {"down": False, "square": True},
-    "looking along -z": {"forward": -1, "low": -1, "down": False},
+    "Mantra": {"low": -1, "down": False, "w": -1},
+    "OpenGL": {"forward": -1, "low": -1, "down": False},
 }
 
 
@@ -249,6 +250,42 @@ def test_an_optical_axis_far_from_the_middle_is_refused() -> None:
     away = Camera(world_to_view=np.eye(4), focal=(30.0, 30.0), center=(19.5 + 11.0, 14.5))
     with pytest.raises(ArgumentError, match=r"expected an optical axis near \(0, 0\) or \(0.5, 0.5\), got \(0.77"):
         Camera.from_matrices(*header(away), SHAPE)
+
+
+def test_the_matrices_of_pbrt_are_understood_in_its_left_handed_world() -> None:
+    """As its cameras.cpp makes them: columns, the smaller side of the image from 0 to 1."""
+    to_world = placed((0.3, 0.2, 0.1), (1.0, 2.0, 3.0))
+    camera = Camera.from_fov(to_world, 40.0, SHAPE, "smaller", "renderman")
+    from_world, half = np.linalg.inv(to_world), math.tan(math.radians(20.0))
+    near, far = 1e-2, 1e3
+    screen = np.diag((1 / half, 1 / half, far / (far - near), 0.0))
+    screen[2, 3], screen[3, 2] = -far * near / (far - near), 1.0
+    ndc = np.array([(0.5, 0, 0, 0.5), (0, 0.5, 0, 0.5), (0, 0, 0.5, 0.5), (0, 0, 0, 1)]) @ screen @ from_world
+    assert_same(Camera.from_matrices(from_world.astype(np.float32), ndc.astype(np.float32), SHAPE), camera)
+
+
+def test_the_header_of_a_file_of_mantra_is_understood() -> None:
+    """That of a frame of 1280x720 in https://github.com/ynput/ayon-houdini/issues/76, of something at the origin."""
+    to_camera = [
+        (-0.243232, -0.429738, -0.869577, 0.0),
+        (-4.55991e-08, 0.8965, -0.443043, 0.0),
+        (-0.969968, 0.107762, 0.218058, 0.0),
+        (-0.49336, -0.356619, 6.48486, 1.0),
+    ]
+    to_ndc = [
+        (-0.587216, -1.84441, -8.69577e-05, 0.869577),
+        (-1.10086e-07, 3.84773, -4.43043e-05, 0.443043),
+        (-2.34172, 0.462509, 2.18058e-05, -0.218058),
+        (-1.19108, -1.53059, 0.000648386, -6.48486),
+    ]
+    camera = Camera.from_matrices(to_camera, to_ndc, (720, 1280))
+    assert camera.focal == pytest.approx((1545.1, 1545.1), rel=1e-4)
+    assert camera.center == pytest.approx((639.5, 359.5), abs=0.01)
+    pixels, depth = camera.project([(0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (-1.0, 0.0, 0.0)])
+    assert depth[0] == pytest.approx(6.48486)
+    assert np.all((pixels > 0) & (pixels < (1280, 720)))
+    assert pixels[1, 1] < pixels[0, 1]  # up is up
+    assert pixels[2, 0] > pixels[0, 0]  # its x axis is -z, and a quarter -x
 
 
 @pytest.mark.skipif(not ARNOLD.exists(), reason=f"{ARNOLD} is not here")

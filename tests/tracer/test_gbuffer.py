@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,8 @@ import trimesh
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from svgf_cl.camera import Camera as PublicCamera
+from svgf_cl.camera import motion_from_cameras
 from svgf_cl.frame import Frame
 from svgf_cl_tracer import Camera, CameraPath, Scene, Shot, render_frame
 from svgf_cl_tracer.camera import ray_through
@@ -96,6 +99,45 @@ def pixel_centres() -> Floats:
 def assert_motion(frame: Frame, expected: Floats) -> None:
     """That motion is (N, 3) as expected to below a thousandth of a pixel, and as much of the depth."""
     np.testing.assert_allclose(frame.motion.reshape(-1, 3), expected, atol=1e-3)
+
+
+def public(camera: Camera) -> PublicCamera:
+    """The same camera as users of the library have it."""
+    view = np.eye(4)
+    view[:3, :3] = camera.basis() * ((1.0,), (-1.0,), (1.0,))  # right, down, forward
+    view[:3, 3] = -view[:3, :3] @ camera.position
+    scale, center = camera.lens(SHAPE).scale, ((SHAPE[1] - 1) / 2, (SHAPE[0] - 1) / 2)
+    parallel = camera.view_height > 0.0
+    return PublicCamera(world_to_view=view, focal=(scale, scale), center=center, orthographic=parallel)
+
+
+@pytest.mark.parametrize("jitter", [False, True])
+@pytest.mark.parametrize("away", [(0.0, 0.0, 0.0), (5e5, -5e5, 2e5)], ids=["near", "far"])
+@pytest.mark.parametrize("view_height", [0.0, 4.0], ids=["perspective", "orthographic"])
+def test_motion_of_what_stands_still_is_that_from_cameras(
+    view_height: float, away: tuple[float, float, float], jitter: bool
+) -> None:
+    keys = [
+        replace(key, position=np.add(key.position, away), look_at=np.add(key.look_at, away), view_height=view_height)
+        for key in PATH.keyframes
+    ]
+    body = trimesh.creation.torus(1.2, 0.5)
+    scene = Scene([Instance(body.triangles + away, Material(), body.vertex_normals[body.faces])], sky=WHITE)
+    sequence, number = Shot(scene, SHAPE, 3, CameraPath.through(keys)), 2
+    frame = render_frame(sequence, number, jitter=jitter)
+    camera, previous = public(sequence.camera(number)), public(sequence.camera(number - 1))
+    x, y = pixel_jitter(number) if jitter else (0.0, 0.0)
+    jittered = replace(camera, center=(camera.center[0] - x, camera.center[1] - y))
+    motion = motion_from_cameras(camera, previous, position=jittered.unproject(frame.depth))
+    hit = np.isfinite(frame.depth)
+    assert 0.1 < hit.mean() < 0.9
+    assert np.abs(frame.motion[hit]).max() > 2.0
+    np.testing.assert_allclose(motion[hit], frame.motion[hit], atol=1e-4)
+    if not jitter:
+        by_depth = motion_from_cameras(camera, previous, depth=frame.depth)
+        np.testing.assert_allclose(by_depth[hit], frame.motion[hit], atol=1e-4)
+        if not view_height:
+            np.testing.assert_allclose(by_depth[~hit], frame.motion[~hit], atol=1e-4)
 
 
 @pytest.mark.parametrize("jitter", [False, True])
