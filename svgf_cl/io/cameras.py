@@ -136,3 +136,9 @@ def _numbers(entry: Mapping[str, Any], name: str, shape: tuple[int, ...]) -> Arr
     if array.dtype.kind not in "iuf" or array.shape != shape:
         raise ArgumentError(name, EXPECTED[shape], shown(value) if name in entry else "nothing")
     return array.astype(np.float64)
+
+
+def cameras_beside(path: Path) -> Path | None:
+    """The file of cameras in the folder of a frame, or in the one above it, if there is one."""
+    folder = path.resolve().parent
+    return next((file for file in (folder / NAME, folder.parent / NAME) if file.is_file()), None)

@@ -102,7 +102,7 @@ def test_a_frame_without_any_radiance_is_refused(tmp_path: Path) -> None:
 def test_a_frame_of_another_renderer_is_told_all_that_is_missing_at_once(tmp_path: Path) -> None:
     plane = np.ones((3, 4), np.float32)
     write_channels(tmp_path / "a.exr", {f"L.Combined.{c}": plane for c in "RGB"} | {"L.Depth.Z": plane})
-    with pytest.raises(FileError, match=r"expected channels R G B normal\.X .*--map color=L\.Combined; L\.Depth\.Z looks"):
+    with pytest.raises(FileError, match=r"expected channels R G B normal\.X .*--map color=L\.Combined; L\.Depth"):
         read_frame(tmp_path / "a.exr")
 
 
