@@ -8,6 +8,7 @@ from svgf_cl.errors import ArgumentError, DeviceError, FileError, FrameError, Se
 from svgf_cl.filters import Accumulation, Eaw, Kalman, Lbf, Sbf, Settings
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Frame
+from svgf_cl.io.shot import open_sequence
 
 __all__ = [
     "Accumulation",
@@ -30,5 +31,6 @@ __all__ = [
     "check_frame",
     "check_sequence",
     "motion_from_cameras",
+    "open_sequence",
 ]
 __version__ = "0.1.0"

@@ -14,13 +14,14 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from svgf_cl import __version__
-from svgf_cl.cli import bench, check, compare, denoise, devices, tune
+from svgf_cl.cli import bench, check, compare, denoise, devices, formats, tune
 from svgf_cl.errors import SvgfError, one_line
 
 Command = Callable[..., None]
 
 COMMANDS: dict[str, Command] = {
     "devices": devices.devices,
+    "formats": formats.formats,
     "check": check.check,
     "denoise": denoise.denoise,
     "compare": compare.compare,
@@ -30,7 +31,7 @@ COMMANDS: dict[str, Command] = {
 # Installed packages may declare more: a function each, under the command's name.
 GROUP = "svgf_cl.commands"
 # As the help lists them; any others come behind.
-ORDER = ("devices", "demo", "scenes", "render", "check", "denoise", "compare", "bench", "tune")
+ORDER = ("devices", "demo", "scenes", "render", "formats", "check", "denoise", "compare", "bench", "tune")
 INTERRUPTED = 130  # as a shell has it of a program that Ctrl-C ends
 # What a command says that takes whatever comes.
 ANYTHING = {"ignore_unknown_options": True, "allow_extra_args": True}

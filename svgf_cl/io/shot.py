@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import overload
+from typing import Any, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -20,7 +21,7 @@ from svgf_cl.io.exr_header import read_attributes
 from svgf_cl.io.image import Image, Plane, Windows
 from svgf_cl.io.reading import LightPass, ReadAs, Reading
 from svgf_cl.io.separate import SeparateFiles
-from svgf_cl.io.sequence import after_gaps, number_of
+from svgf_cl.io.sequence import after_gaps, find_frames, number_of
 from svgf_cl.io.window import Window, placed, union
 
 Picture = npt.NDArray[np.float32]
@@ -204,6 +205,51 @@ class Shot(Sequence[Frame]):
         changes += [f"with {name}" for name in sorted(have - self._fields)]
         if changes:
             raise FileError(f"{path}: expected the fields of {self.paths[0]}, got a frame {', '.join(changes)}")
+
+
+def open_sequence(
+    frames: str | os.PathLike[str] | Iterable[str | os.PathLike[str]],
+    *,
+    allow_gaps: bool = False,
+    separate: Mapping[str, str | os.PathLike[str]] | None = None,
+    **how: Any,
+) -> Shot:
+    """Open the frames of a shot that a renderer wrote: EXR files of Blender, Mitsuba, pbrt, Arnold, V-Ray, or our own.
+
+    Parameters
+    ----------
+    frames : path, or iterable of paths
+        Files, their folder, or a pattern of their names: ``"shot/####.exr"``, ``"shot/%04d.exr"``, ``"shot/*.exr"``.
+    allow_gaps : bool
+        Whether frames may be missing; `Shot.cuts` has those behind a gap.
+    separate : mapping of str to path, optional
+        Patterns of the files of fields that are not in those of `frames`, such as ``{"depth": "depth.####.exr"}``.
+    **how
+        The parameters of `ReadAs`: ``format``, ``view_layer``, ``passes``, ``motion_scale``, ``cameras``,
+        ``still_camera``.
+
+    Returns
+    -------
+    Shot
+        A sequence of `Frame`, each read when it is asked for.
+
+    Raises
+    ------
+    FileError
+        Files are missing, damaged or of several shots, or the first lacks a field.
+    SvgfError
+        One of `how` is wrong.
+
+    Examples
+    --------
+    >>> frames = open_sequence("shot/####.exr")
+    >>> with Denoiser(frames.shape) as den:
+    ...     pictures = [den.denoise(frame) for frame in frames]
+    """
+    given = [frames] if isinstance(frames, str | os.PathLike) else frames
+    files = find_frames([Path(each) for each in given], allow_gaps=allow_gaps)
+    others = SeparateFiles.of({field: Path(pattern) for field, pattern in (separate or {}).items()})
+    return Shot(files, ReadAs(**how), others)
 
 
 def stacked(path: Path, planes: Mapping[str, Plane], channels: Sequence[str]) -> Picture:

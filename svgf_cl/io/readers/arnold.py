@@ -1,8 +1,9 @@
 """Arnold's multichannel EXR: R G B A (RGBA), and a layer for each AOV; the header has the camera's matrices.
 
-N is in world space, Z the distance along the camera's axis, motionvector the way a point makes in pixels during the
-shutter interval, y up. With an interval of a whole frame, centred on it or begun by it, that is minus our motion, as
-far as things move evenly.
+N is in world space, Z the distance along the camera's axis. motionvector is the way that a point moves during the
+shutter interval: with an interval of a whole frame it is minus our motion, as far as things move evenly. Its unit and
+axes were taken to be pixels, y up; no frame of Arnold with it was at hand. So where there are positions and the
+header's cameras, motion of what stands still can be had from them: leave motionvector out.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from svgf_cl.camera import Camera, view_axes
 from svgf_cl.io.image import Image
-from svgf_cl.io.readers.reader import Array, Pass, Reader, Values
+from svgf_cl.io.readers.reader import Array, Exactly, Pass, Reader, Values
 
 SWITCH = 'render with Film "gbuffer"'
 AXES = ("renderman", "mitsuba")  # x to the right, as the format says, or to the left, as mirrored cameras have it
@@ -61,8 +61,9 @@ PBRT = Reader(
     passes={
         "color": (Pass(("",), 3),),
         "albedo": (Pass(("Albedo",), 3),),
-        "normal": (Pass(("Ns", "N"), 3),),
-        "position": (Pass(("P",), 3),),
+        # Versions before 2022 wrote Px in place of P.X.
+        "normal": (Pass(("Ns", "N"), 3), Exactly(("Nsx", "Nsy", "Nsz"))),
+        "position": (Pass(("P",), 3), Exactly(("Px", "Py", "Pz"))),
     },
     switches=dict.fromkeys(("albedo", "normal", "depth", "motion"), SWITCH),
     complete=in_world,

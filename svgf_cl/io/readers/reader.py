@@ -36,6 +36,10 @@ class Source(Protocol):
     """Where a field may come from."""
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """What it may be called."""
+
+    @property
     def convert(self) -> Convert | None:
         """What makes ours of its array."""
 

@@ -1,0 +1,37 @@
+"""``svgf-cl formats``: the renderers whose frames are read, and what each pass is read from."""
+
+from __future__ import annotations
+
+from svgf_cl.cli.console import show
+from svgf_cl.io.readers import READERS
+from svgf_cl.io.readers.reader import Reader
+
+
+def formats() -> None:
+    """List the renderers whose frames are read, and the passes that fields are read from.
+
+    Which one wrote a file is told from the file; --format NAME of denoise and check says it. Capitals, spaces and signs
+    in the names of passes do not matter. Any other renderer's passes are read with --map FIELD=PASS.
+
+    \b
+    Example:
+      svgf-cl formats
+    """
+    rows = [
+        (reader.name, reader.title if not index else "", field, passes, reader.switches.get(field, ""))
+        for reader in READERS.values()
+        for index, (field, passes) in enumerate(sources(reader))
+    ]
+    show(
+        "frames of these renderers are read", ("format", "renderer", "field", "passes", "how to have it"), rows, words=5
+    )
+
+
+def sources(reader: Reader) -> list[tuple[str, str]]:
+    """Each field with the passes that it is read from, the best first, and the light passes."""
+    fields = [
+        (field, ", ".join(name or "R G B" for candidate in candidates for name in candidate.names))
+        for field, candidates in reader.passes.items()
+    ]
+    lights = [name for light in reader.lights for name in light.names]
+    return [*fields, *([("light passes", ", ".join(lights))] if lights else [])]
