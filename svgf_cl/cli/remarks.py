@@ -13,7 +13,7 @@ from svgf_cl.check.view import FAR, has_normal, in_range
 from svgf_cl.errors import FileError
 from svgf_cl.frame import CARRIED, Frame
 from svgf_cl.io.look_alikes import advice, grouped
-from svgf_cl.io.readers.own import CHANNEL_NAMES, OPTIONAL, needed
+from svgf_cl.io.readers.own import CHANNEL_NAMES, OPTIONAL, OWN, needed
 from svgf_cl.io.reading import Reading
 from svgf_cl.io.shot import Shot, ShotFrame, fields_of
 
@@ -41,8 +41,10 @@ def described(reading: Reading, first: ShotFrame) -> str:
     if missing:
         parts.append(f"missing: {', '.join(f'{field} ({COSTS[field]})' for field in missing)}")
     unread = [channel for channel in first.image.planes if not any(channel in found for found in names.values())]
-    hint = advice(unread, {field: needed(field) for field in CHANNEL_NAMES if field not in (*names, *PARTS)})
-    return "; ".join([*parts, *([f"ignored: {hint}"] if hint else [])])
+    if reading.reader is OWN:  # of other renderers it is known what else their passes are
+        hint = advice(unread, {field: needed(field) for field in CHANNEL_NAMES if field not in (*names, *PARTS)})
+        parts += [f"ignored: {hint}"] if hint else []
+    return "; ".join(parts)
 
 
 class Remarks:
