@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from svgf_cl.errors import FileError
-from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.kalman import STANDARD_ERROR
 from svgf_cl.io.display import to_bytes
 from svgf_cl.io.display import write_image as write_png
@@ -22,7 +21,8 @@ from svgf_cl.io.separate import SeparateFiles
 from svgf_cl.io.sequence import number_of
 from svgf_cl.io.shot import Shot, ShotFrame
 from svgf_cl.io.window import placed
-from svgf_cl.lights import Denoised, LightsDenoiser
+from svgf_cl.lights import Denoised
+from svgf_cl.shot_denoiser import Method, ShotDenoiser
 
 Look = Callable[[Shot, int, ShotFrame], None]
 
@@ -59,24 +59,21 @@ class Job:
         The frames of the shot, in order.
     targets : tuple of Path
         The file to write for each.
-    settings : Filter
+    method : Method
     how : ReadAs
         How files are read.
     separate : SeparateFiles
         Further files of each frame.
     style : Style
         What is written.
-    lights : bool
-        Whether light passes are denoised, too.
     """
 
     paths: tuple[Path, ...]
     targets: tuple[Path, ...]
-    settings: Filter
+    method: Method
     how: ReadAs = field(default_factory=ReadAs)
     separate: SeparateFiles = field(default_factory=lambda: SeparateFiles({}))
     style: Style = field(default_factory=Style)
-    lights: bool = True
 
     def part(self, places: range) -> Job:
         """The same job for some of its frames."""
@@ -130,14 +127,14 @@ def run(job: Job, warm_up: int = 0, look: Look | None = None) -> Iterator[Done]:
         As of `Denoiser.denoise`.
     """
     shot = Shot(job.paths, job.how, job.separate)
-    denoiser = LightsDenoiser(shot.shape, job.settings)
+    denoiser = ShotDenoiser(shot, job.method)
     for index, target in enumerate(job.targets):
         source = shot.read(index)
         if look:
             look(shot, index, source)
         if index in shot.cuts:
             denoiser.reset()
-        denoised = denoiser.denoise(source.frame, source.lights if job.lights else ())
+        denoised = denoiser.denoise(source)
         if index >= warm_up:
             kept = write(target, result(shot, source, denoised, job.style))
             if job.style.png:

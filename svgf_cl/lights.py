@@ -8,7 +8,6 @@ light.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -28,8 +27,6 @@ Channels = tuple[str, ...]
 # and so are the factors and the picture.
 ROUNDING = 2.0**-9
 LEAST = 1e-6  # a difference that is nothing, where there is no light
-# Of pixels that are darker than the sum of their lights: where they are more, the passes are not parts of the picture.
-STRAY = 0.01
 WHOLE, REST = ("picture",), ("rest",)
 
 
@@ -42,18 +39,18 @@ class Denoised:
     picture : (H, W, 3) float32
         Linear HDR radiance.
     lights : mapping of tuple of str to (H, W, 3) float32
-        The denoised passes, by their channels; their sum, each times its factor, is the picture.
+        The denoised passes, by their channels, and the passes that some are multiplied by: the picture is their sum.
     standard_error : (H, W) float32, optional
         Of the picture's luminance, where the filter tells it.
     """
 
     picture: Picture
     lights: Mapping[Channels, Picture]
-    standard_error: npt.NDArray[np.float32] | None = None
+    standard_error: Picture | None = None
 
 
 class LightsDenoiser:
-    """Denoises frames of one size, with the light passes that their pictures are the sum of.
+    """Denoises frames of one size, light by light.
 
     Parameters
     ----------
@@ -66,32 +63,36 @@ class LightsDenoiser:
     def __init__(self, shape: Shape, settings: Filter) -> None:
         self._shape, self._settings = shape, settings
         self._denoisers: dict[Channels, Denoiser] = {}
-        self._are_parts: bool | None = None
 
-    def denoise(self, frame: Frame, lights: Sequence[Light] = ()) -> Denoised:
-        """Denoise the next frame.
+    def whole(self, frame: Frame) -> Denoised:
+        """Denoise the picture of the next frame as a whole; errors as of `Denoiser.denoise`."""
+        picture = self._filtered(WHOLE, frame)
+        return Denoised(picture, {}, self._error({WHOLE: None}))
+
+    def parts(self, frame: Frame, lights: Sequence[Light], rest: Picture) -> Denoised:
+        """Denoise the parts of the picture of the next frame.
 
         Parameters
         ----------
         frame : Frame
+            Its color is not read.
         lights : sequence of Light
-            What its picture is the sum of; none to filter the picture as a whole.
+        rest : (H, W, 3) float32
+            What the picture has beyond the sum of the lights; below 0 where it has less.
 
         Raises
         ------
         SvgfError
             As `Denoiser.denoise`.
         """
-        if not lights or not self._checked(frame, lights):
-            picture = self._filtered(WHOLE, frame)
-            return Denoised(picture, {}, self._error(WHOLE))
         made = {light.channels: self._light(frame, light) for light in lights if light.filtered}
         terms = [multiplied(made.get(light.channels, light.radiance), light.factor) for light in lights]
-        rest = remainder(frame, lights)
         terms.append(np.minimum(rest, 0.0))
         if rest.max(initial=0.0) > 0.0 or REST in self._denoisers:
             terms.append(self._filtered(REST, single(frame, np.maximum(rest, 0.0), frame.albedo)))
-        return Denoised(np.sum(terms, axis=0, dtype=np.float32), made, self._error_of_sum(lights))
+        factors = {light.factor_channels: light.factor for light in lights if light.factor is not None}
+        error = self._error({light.channels: light.factor for light in lights} | {REST: None})
+        return Denoised(np.sum(terms, axis=0, dtype=np.float32), made | factors, error)
 
     def reset(self) -> None:
         """Forget the past, as at a cut."""
@@ -110,7 +111,7 @@ class LightsDenoiser:
         """A light, filtered; one that has been dark so far takes no filter."""
         if light.channels not in self._denoisers and not light.radiance.any():
             return light.radiance
-        albedo = frame.albedo if light.factor is None else None
+        albedo = frame.albedo if light.factor is None or light.reflects else None
         return self._filtered(light.channels, single(frame, light.radiance, albedo))
 
     def _filtered(self, key: Channels, frame: Frame) -> Picture:
@@ -119,33 +120,14 @@ class LightsDenoiser:
         result: Picture = self._denoisers[key].denoise(frame)
         return result
 
-    def _checked(self, frame: Frame, lights: Sequence[Light]) -> bool:
-        """Whether the passes are parts of the picture, told from the first frame; a warning where they are not."""
-        if self._are_parts is None:
-            share = float((remainder(frame, lights).min(axis=-1) < 0.0).mean())
-            self._are_parts = share <= STRAY
-            if not self._are_parts:
-                warnings.warn(
-                    f"the light passes add up to more than the picture in {100 * share:.0f} % of the pixels, so they"
-                    " are left as they are, and the picture is denoised as a whole",
-                    stacklevel=3,
-                )
-        return self._are_parts
-
-    def _error(self, key: Channels) -> npt.NDArray[np.float32] | None:
-        denoiser = self._denoisers.get(key)
-        return denoiser.stage(STANDARD_ERROR) if denoiser and STANDARD_ERROR in denoiser.stages else None
-
-    def _error_of_sum(self, lights: Sequence[Light]) -> npt.NDArray[np.float32] | None:
-        """The standard error of the sum of lights, whose noise is independent."""
-        factors = {light.channels: light.factor for light in lights}
+    def _error(self, factors: Mapping[Channels, Picture | None]) -> Picture | None:
+        """The standard error of the sum of lights, by their channels and factors, whose noise is independent."""
         squares = []
-        for key in self._denoisers:
-            error, factor = self._error(key), factors.get(key)
-            if error is not None:
-                squares.append(
-                    np.square(error if factor is None else error * (factor @ np.array(LUMINANCE, np.float32)))
-                )
+        for key, denoiser in self._denoisers.items():
+            if key in factors and STANDARD_ERROR in denoiser.stages:
+                factor = factors[key]
+                share = 1.0 if factor is None else factor @ np.array(LUMINANCE, np.float32)
+                squares.append(np.square(denoiser.stage(STANDARD_ERROR) * share))
         return np.sqrt(np.sum(squares, axis=0, dtype=np.float32)) if squares else None
 
 

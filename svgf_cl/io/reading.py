@@ -71,13 +71,14 @@ class LightPass:
         Its red, green and blue.
     factor : tuple of str
         Channels of the pass that it is to be multiplied by; none where it is light as it is.
-    filtered : bool
-        Whether it is noisy.
+    filtered, reflects : bool
+        As of `readers.reader.Light`.
     """
 
     channels: tuple[str, ...]
     factor: tuple[str, ...]
     filtered: bool
+    reflects: bool
 
 
 class Reading:
@@ -188,7 +189,7 @@ class Reading:
             if light.factor and len(factor) < 3:
                 continue
             there = [passes[name] for name in map(plain, light.names) if len(passes.get(name, ())) >= 3]
-            found += [LightPass(channels[:3], factor[:3], light.filtered) for channels in there]
+            found += [LightPass(channels[:3], factor[:3], light.filtered, light.reflects) for channels in there]
         return tuple(found) if any(light.filtered for light in found) else ()
 
     @property

@@ -42,14 +42,20 @@ class Light:
         What the pass holds.
     factor : (H, W, 3) float32, optional
         What it is to be multiplied by to be a part of the picture; 1 where there is none.
+    factor_channels : tuple of str
+        The channels that the factor is from.
     filtered : bool
         Whether it is noisy.
+    reflects : bool
+        Whether it is seen in the surface, as in a mirror, so that the albedo of what is seen is in it.
     """
 
     channels: tuple[str, ...]
     radiance: Picture
-    factor: Picture | None
-    filtered: bool
+    factor: Picture | None = None
+    factor_channels: tuple[str, ...] = ()
+    filtered: bool = True
+    reflects: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,7 +201,7 @@ class Shot(Sequence[Frame]):
         """A light of a file, on the window of the shot."""
         radiance = placed(stacked(path, planes, light.channels), own, self.window, 0.0)
         factor = placed(stacked(path, planes, light.factor), own, self.window, 0.0) if light.factor else None
-        return Light(light.channels, radiance, factor, light.filtered)
+        return Light(light.channels, radiance, factor, light.factor, light.filtered, light.reflects)
 
     def _check_fields(self, path: Path, frame: Frame) -> None:
         """Raise `FileError` where a frame has another set of fields than the first one."""

@@ -7,18 +7,30 @@ was hit. Normal is in world space. Denoising Albedo of a sharp mirror is that of
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from svgf_cl.io.image import Image
 from svgf_cl.io.readers.passes import place
-from svgf_cl.io.readers.reader import Array, Light, Pass, Reader, has_attribute, hashes, without_edges
+from svgf_cl.io.readers.reader import Array, Light, Pass, Reader, has_attribute, hashes, text_attribute, without_edges
 
+SAMPLES = re.compile(r"cycles\..*\.samples", re.DOTALL)  # attributes, one a view layer
 NOTHING = 1e9  # depths beyond it stand for a ray that hit nothing
 
 
 def recognises(image: Image) -> bool:
     """Whether Blender says so, or a view layer has a pass called as Blender calls the picture."""
     return has_attribute(image, "BlenderMultiChannel") or any(place(name).name == "combined" for name in image.planes)
+
+
+def averages(image: Image) -> bool:
+    """Whether there was more than one sample a pixel: the only one goes through its centre."""
+    names = [name for part in image.parts for name in part.attributes]
+    samples = [
+        text_attribute(image, name) for name in names if name.startswith("cycles.") and name.endswith(".samples")
+    ]
+    return samples != ["1"] * max(1, len(samples))
 
 
 def to_previous(vector: Array) -> Array:
@@ -59,10 +71,11 @@ BLENDER = Reader(
         "motion": "enable View Layer Properties > Passes > Data > Vector, and turn off Render > Motion Blur, with which"
         " Blender does not write it",
     },
+    averages=averages,
     lights=(
         Light(("DiffDir", "DiffInd"), "DiffCol"),
-        Light(("GlossDir", "GlossInd"), "GlossCol"),
-        Light(("TransDir", "TransInd"), "TransCol"),
+        Light(("GlossDir", "GlossInd"), "GlossCol", reflects=True),
+        Light(("TransDir", "TransInd"), "TransCol", reflects=True),
         Light(("VolumeDir", "VolumeInd")),
         Light(("Emit", "Env"), filtered=False),
     ),

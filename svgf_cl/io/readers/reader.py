@@ -130,11 +130,14 @@ class Light:
         The pass that each of them has to be multiplied by to be light: an albedo that is free of noise.
     filtered : bool
         Whether it is noisy; else it passes through, as light that the camera sees directly does.
+    reflects : bool
+        Whether it is seen in the surface, as in a mirror, and the albedo of what is seen there is still in it.
     """
 
     names: tuple[str, ...]
     factor: str | None = None
     filtered: bool = True
+    reflects: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,6 +160,9 @@ class Reader:
         Their sum is the picture.
     complete : callable, optional
         Makes fields of what the passes hold, where that takes more than one of them.
+    averages : callable
+        Whether a pixel of an image is a mean over several places in it, so that what guides the filter is a mixture at
+        edges, and noisy under depth of field and motion blur.
     """
 
     name: str
@@ -166,6 +172,7 @@ class Reader:
     switches: Mapping[str, str] = field(default_factory=dict)
     lights: tuple[Light, ...] = ()
     complete: Complete | None = None
+    averages: Callable[[Image], bool] = lambda image: True
 
     def sources(self, found: Found) -> dict[str, tuple[Source, tuple[str, ...]]]:
         """The source of each field that is there, and its channels; `ValueError` where one is there in part."""
