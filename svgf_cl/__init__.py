@@ -7,6 +7,7 @@ from svgf_cl.errors import ArgumentError, DeviceError, FileError, FrameError, Se
 from svgf_cl.filters import Accumulation, Eaw, Kalman, Lbf, Sbf, Settings
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Frame
+from svgf_cl.tiled import TiledDenoiser, denoiser_for
 
 __all__ = [
     "Accumulation",
@@ -24,8 +25,10 @@ __all__ = [
     "Settings",
     "SettingsError",
     "SvgfError",
+    "TiledDenoiser",
     "Tuning",
     "check_frame",
     "check_sequence",
+    "denoiser_for",
 ]
 __version__ = "0.1.0"
