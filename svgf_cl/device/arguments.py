@@ -100,7 +100,7 @@ def layout_of(shape: Shape, tuning: Tuning, settings: Filter) -> Layout:
     if not layout.indexable(planes):
         side = math.isqrt(2**31 // planes) // 1000 * 1000
         raise SvgfError(
-            f"Denoiser: expected an image of at most about {side} x {side} pixels, got {shown(shape)}; work in tiles, as "
-            "svgf_cl.denoiser_for(shape, inputs) does"
+            f"Denoiser: expected an image of at most about {side} x {side} pixels, got {shown(shape)}; work in "
+            "tiles, as svgf_cl.denoiser_for(shape, inputs) does"
         )
     return layout

@@ -36,16 +36,16 @@ from tests.denoising import vector_width
 from tests.frames import FULL, PLAIN, SPLIT, bumpy_sequence, noise, only, wall
 
 SHAPE = (97, 143)  # odd, and no multiple of a vector
-FILTERS: tuple[Filter, ...] = (
-    Kalman(iterations=1, taa=True, standard_error=True),
-    Kalman(iterations=2),
-    Settings(iterations=1, taa=True, pixel_filter=0.2),
-    Settings(iterations=2, half_guides=True, half_history=True, taa=True),
-    Eaw(iterations=2, taa=True),
-    Sbf(taa=True),
-    Lbf(),
-    Accumulation(taa=True),
-)
+FILTERS: dict[str, Filter] = {
+    "kalman": Kalman(iterations=1, taa=True, standard_error=True),
+    "two levels": Kalman(iterations=2),
+    "svgf": Settings(iterations=1, taa=True, pixel_filter=0.2),
+    "16 bits": Settings(iterations=2, half_guides=True, half_history=True, taa=True),
+    "eaw": Eaw(iterations=2, taa=True),
+    "sbf": Sbf(taa=True),
+    "lbf": Lbf(),
+    "accumulation": Accumulation(taa=True),
+}
 
 
 @pytest.fixture
@@ -95,15 +95,16 @@ def assert_same(chosen: Filter, frames: Sequence[Frame], tiled: TiledDenoiser, c
 
 @pytest.mark.usefixtures("no_slack")
 @pytest.mark.parametrize("is_wild", [False, True], ids=["moving", "wild"])
-@pytest.mark.parametrize("chosen", FILTERS, ids=str)
+@pytest.mark.parametrize("chosen", FILTERS.values(), ids=FILTERS)
 def test_every_filter_gives_the_same_bits(chosen: Filter, is_wild: bool) -> None:
     frames = bumpy_sequence(FULL, count=3, shape=SHAPE)
     frames = wild(frames) if is_wild else frames
     assert_same(chosen, frames, made(chosen, frames[0]))
 
 
-@pytest.mark.parametrize("chosen", [FILTERS[0], FILTERS[3]], ids=str)
-def test_two_signals_a_cut_and_short_motion(chosen: Filter) -> None:
+@pytest.mark.parametrize("name", ["kalman", "16 bits"])
+def test_two_signals_a_cut_and_short_motion(name: str) -> None:
+    chosen = FILTERS[name]
     frames = bumpy_sequence(SPLIT, count=4, shape=SHAPE, motion=2)
     assert_same(chosen, frames, made(chosen, frames[0], 1.2), cut_before=2)
 
@@ -112,10 +113,10 @@ def test_two_signals_a_cut_and_short_motion(chosen: Filter) -> None:
 def test_other_vector_widths(width: int) -> None:
     frames = wild(bumpy_sequence(PLAIN, count=2, shape=SHAPE))
     with vector_width(width):
-        assert_same(FILTERS[1], frames, made(FILTERS[1], frames[0]))
+        assert_same(FILTERS["kalman"], frames, made(FILTERS["kalman"], frames[0]))
 
 
-@settings(max_examples=12)
+@settings(max_examples=12, deadline=None)
 @given(
     st.tuples(st.integers(1, 150), st.integers(1, 150)).filter(lambda shape: max(shape) > 75),
     st.floats(1.0, 1.6),
@@ -132,7 +133,7 @@ def test_frames_and_tiles_of_any_size(shape: Shape, share: float, slack: int, ch
             assert_same(chosen, frames, tiled)
 
 
-@pytest.mark.parametrize("chosen", FILTERS, ids=str)
+@pytest.mark.parametrize("chosen", FILTERS.values(), ids=FILTERS)
 def test_it_takes_no_more_than_it_is_given(chosen: Filter, monkeypatch: pytest.MonkeyPatch) -> None:
     frames = wild(bumpy_sequence(FULL, count=2, shape=SHAPE))
     monkeypatch.setattr(tiling, "SLACK", 0)
@@ -143,9 +144,10 @@ def test_it_takes_no_more_than_it_is_given(chosen: Filter, monkeypatch: pytest.M
     window = cut.window(int(1.1 * cut.least()), 2**31)
     assert window is not None
     user = sum(cut.pipeline.user_nbytes.values()) * window[0] * window[1]
-    assert tiled.nbytes + user <= 1.1 * cut.least() < sum(cut.whole())
+    assert tiled.nbytes + user <= 1.1 * cut.least()
 
 
+@pytest.mark.usefixtures("no_slack")
 def test_the_right_one_is_made() -> None:
     frame = only(wall(SHAPE), PLAIN)
     inputs, chosen = Inputs.of(frame), Accumulation()
@@ -159,7 +161,7 @@ def test_the_right_one_is_made() -> None:
 
 
 def test_too_little_memory_says_how_much_it_takes() -> None:
-    with pytest.raises(DeviceError, match="no room for tiles of 143x97 frames: expected at least .* MiB, got 0.0 MiB"):
+    with pytest.raises(DeviceError, match=r"no room for tiles of 143x97 frames: expected at least .* MiB, got 0.0 MiB"):
         TiledDenoiser(SHAPE, Inputs(), max_bytes=1000)
     for wrong in (0, -1, 1.5, True, "1G"):
         with pytest.raises(SvgfError, match="max_bytes: expected a whole number of bytes"):

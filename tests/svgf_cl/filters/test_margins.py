@@ -9,15 +9,15 @@ from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.margins import margins, widest_margin
 from svgf_cl.filters.signals import Inputs
 
-# From the last pass back: levels of 3x3 taps 1, 2, ... apart; variance 3; depth gradient 1; antialiasing 1. Kalman has
-# guidance 3, correction 2 (a coarse pixel), tests of 8, 4 and 2 pixels, and the 2x2 pixels of the first mean.
+# From the last pass back: antialiasing 1; levels of taps 1, 2, ... apart; variance 3; depth gradient 1. Kalman has
+# guidance 3, update 3, tests of 8, 4 and 2 pixels, and the 2x2 pixels of the first mean.
 CASES = [
     (Accumulation(), 1),
     (Accumulation(taa=True), 1 + 1),
     (Eaw(taps="3x3", iterations=3), 1 + 2 + 4 + 1),
-    (Settings(taps="3x3", iterations=3), 1 + 2 + 4 + 3),
-    (Settings(taps="5x5", iterations=5, taa=True), 2 * 31 + 3 + 1),
-    (Sbf(), 3 + 16 + 3),
+    (Settings(taps="3x3", iterations=3), 1 + 2 + 4 + 3 + 1),
+    (Settings(taps="5x5", iterations=5, taa=True), 1 + 2 * 31 + 3 + 1),
+    (Sbf(), 3 + 16 + 3 + 1),
     (Kalman(taps="3x3", iterations=2), 1 + 2 + 3 + 3 + 8 + 4 + 2 + 1 + 1),
 ]
 
