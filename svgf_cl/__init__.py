@@ -9,6 +9,7 @@ from svgf_cl.filters import Accumulation, Eaw, Kalman, Lbf, Sbf, Settings
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Frame
 from svgf_cl.io.shot import open_sequence
+from svgf_cl.tiled import TiledDenoiser, denoiser_for
 
 __all__ = [
     "Accumulation",
@@ -27,9 +28,11 @@ __all__ = [
     "Settings",
     "SettingsError",
     "SvgfError",
+    "TiledDenoiser",
     "Tuning",
     "check_frame",
     "check_sequence",
+    "denoiser_for",
     "motion_from_cameras",
     "open_sequence",
 ]

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from svgf_cl.filters import operations
 from svgf_cl.filters.operations import DISTANCE, EXP, LightOperations
-from svgf_cl.filters.pipeline import Access, Life, Number, Pass, Pipeline, Quantity, Resource, access, user
+from svgf_cl.filters.pipeline import PAST, Access, Life, Number, Pass, Pipeline, Quantity, Resource, access, user
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.filters.taps import BLOCK, CROSS, HERE, footprint, grid
 from svgf_cl.filters.wavelet import WaveletFilter
@@ -140,7 +140,7 @@ class Kalman(WaveletFilter):
             "predict",
             "predict",
             scalars={name: getattr(self, name) for name in ("depth_threshold", "normal_threshold", "albedo_threshold")},
-            per_frame=("frame_number",),
+            per_frame=("frame_number", *PAST),
             reads=(
                 user("motion", channels=inputs.motion),
                 access(guide, taps=dict.fromkeys(guide.names, HERE) | {"depth": CROSS}),
@@ -150,6 +150,7 @@ class Kalman(WaveletFilter):
                 access(filtered, "filtered", {"color": taps}),
             ),
             writes=(access(self.prediction(inputs)), access(self.innovation(inputs))),
+            rarely=(footprint(4),),  # thin geometry: the nine pixels around the nearest
             operations=operations.predict(inputs),
         )
 
@@ -220,6 +221,7 @@ class Kalman(WaveletFilter):
                 access(self.correction(inputs), taps=dict.fromkeys(self.correction(inputs).names, BLOCK)),
             ),
             writes=(access(state, taps=dict.fromkeys(CARRIED, HERE)), access(self.expected(inputs))),
+            rarely=(grid(3),),  # what is too thin for every second pixel
             operations=operations.update(inputs),
         )
 
@@ -241,6 +243,7 @@ class Kalman(WaveletFilter):
                 access(self.guidance(inputs, "guidance_1"), "first"),
                 access(self.guidance(inputs, "guidance")),
             ),
+            rarely=(grid(3),),  # where history is short
             operations=operations.guidance(inputs),
         )
 

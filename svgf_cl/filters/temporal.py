@@ -11,7 +11,7 @@ from svgf_cl.errors import SettingsError
 from svgf_cl.filters import operations
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.formats import Format
-from svgf_cl.filters.pipeline import OUT, Access, Life, Pass, Quantity, Resource, access, user
+from svgf_cl.filters.pipeline import OUT, PAST, Access, Life, Pass, Quantity, Resource, access, user
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.filters.taps import CROSS, HERE, footprint, grid
 from svgf_cl.settings import number, switch
@@ -160,7 +160,7 @@ class TemporalFilter(Filter):
                 "normal_threshold": self.normal_threshold,
                 "albedo_threshold": self.albedo_threshold,
             },
-            per_frame=("frame_number",),
+            per_frame=("frame_number", *PAST),
             reads=(
                 user("motion", channels=inputs.motion),
                 access(guide, taps=dict.fromkeys(guide.names, HERE) | {"depth": CROSS}),
@@ -170,6 +170,7 @@ class TemporalFilter(Filter):
                 access(moments, taps=dict.fromkeys(moments.names, taps), previous=True),
             ),
             writes=(access(accumulated, "accumulated", {"color": HERE}), access(moments)),
+            rarely=(footprint(4),),  # thin geometry: the nine pixels around the nearest
             operations=operations.temporal(inputs),
         )
 
@@ -199,6 +200,7 @@ class TemporalFilter(Filter):
             "taa",
             "taa",
             scalars={"alpha_taa": self.alpha_taa, "pixel_filter": self.pixel_filter},
+            per_frame=PAST,
             reads=(
                 user("motion", channels=inputs.motion),
                 access(self.guide(inputs), taps={"depth": grid(1)}),
@@ -207,5 +209,6 @@ class TemporalFilter(Filter):
                 access(antialiased, "history", {"color": footprint(4)}, previous=True),
             ),
             writes=(access(antialiased, "next_history"), user(OUT)),
+            rarely=(grid(1),),  # motion, beside an edge
             operations=operations.taa(filters_pixels=self.pixel_filter > 0),
         )
