@@ -35,7 +35,7 @@ WARNINGS = (
 )
 
 ROOT = Path(__file__).resolve().parent.parent
-FORMATTED = ("kernels/*.cl", "kernels/*.clh", "svgf_cl/bench/*.cl")
+FORMATTED = ("kernels/*.cl", "kernels/*.clh", "svgf_cl/bench/*.cl", "examples/*.cl")
 
 
 Job = tuple[str, tuple[str, ...]]  # a source file and the compiler's options
