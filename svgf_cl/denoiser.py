@@ -159,7 +159,7 @@ class Denoiser:
         with self._in_turn() as arrays:
             frame.check(self._shape)
             if out is not None:
-                check_out(out, self._result_shape(frame))
+                check_out(out, frame.picture_shape)
             with self._opencl_errors("denoise", NOT_BEGUN):
                 inputs = Inputs.of(frame)
                 plan = self._ready(inputs, "denoise(frame)")
@@ -387,12 +387,9 @@ class Denoiser:
     def _cut(self) -> None:
         self._is_cut, self._events = True, ()
 
-    def _result_shape(self, frame: Frame) -> tuple[int, int, int]:
-        return (*self._shape, 4 if frame.has_alpha else 3)
-
     def _result(self, frame: Frame) -> Any:
         """A new array for the result, of the same kind as the frame's."""
-        shape = self._result_shape(frame)
+        shape = frame.picture_shape
         if all(isinstance(value, cl_array.Array) for value in frame.present().values()):
             nbytes = 4 * math.prod(shape)
             return cl_array.Array(self._queue, shape, np.float32, data=allocate(self._workplace.queue, nbytes, nbytes))

@@ -136,6 +136,11 @@ class Frame:
         """Whether `color` has alpha, so that the result has it too."""
         return self.color is not None and len(self.color.shape) == 3 and self.color.shape[2] == 4
 
+    @property
+    def picture_shape(self) -> tuple[int, int, int]:
+        """Of what is made of it: (height, width, 3), or 4 where `color` has alpha."""
+        return (*self.shape, 4 if self.has_alpha else 3)
+
     def layer(self, name: str) -> Any:
         """What filters know by a name: a field, but `color` without its alpha; or alpha alone, (H, W)."""
         if name == ALPHA:

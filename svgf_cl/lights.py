@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from svgf_cl.denoiser import Denoiser
+from svgf_cl.denoisers import Denoisers
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.kalman import STANDARD_ERROR
 from svgf_cl.frame import LUMINANCE, Frame, Shape
@@ -28,6 +28,7 @@ Channels = tuple[str, ...]
 ROUNDING = 2.0**-9
 LEAST = 1e-6  # a difference that is nothing, where there is no light
 WHOLE, REST = ("picture",), ("rest",)
+WEIGHTS = np.array(LUMINANCE, np.float32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,15 +59,16 @@ class LightsDenoiser:
         (height, width) in pixels.
     settings : Filter
         For all lights alike.
+    share : float
+        As of `Denoisers`.
     """
 
-    def __init__(self, shape: Shape, settings: Filter) -> None:
-        self._shape, self._settings = shape, settings
-        self._denoisers: dict[Channels, Denoiser] = {}
+    def __init__(self, shape: Shape, settings: Filter, share: float = 1.0) -> None:
+        self._denoisers = Denoisers(shape, settings, share)
 
     def whole(self, frame: Frame) -> Denoised:
         """Denoise the picture of the next frame as a whole; errors as of `Denoiser.denoise`."""
-        picture = self._filtered(WHOLE, frame)
+        picture = self._denoisers.denoise(WHOLE, frame)
         return Denoised(picture, {}, self._error({WHOLE: None}))
 
     def parts(self, frame: Frame, lights: Sequence[Light], rest: Picture) -> Denoised:
@@ -89,45 +91,33 @@ class LightsDenoiser:
         terms = [multiplied(made.get(light.channels, light.radiance), light.factor) for light in lights]
         terms.append(np.minimum(rest, 0.0))
         if rest.max(initial=0.0) > 0.0 or REST in self._denoisers:
-            terms.append(self._filtered(REST, single(frame, np.maximum(rest, 0.0), frame.albedo)))
+            terms.append(self._denoisers.denoise(REST, single(frame, np.maximum(rest, 0.0), frame.albedo)))
         factors = {light.factor_channels: light.factor for light in lights if light.factor is not None}
         error = self._error({light.channels: light.factor for light in lights} | {REST: None})
         return Denoised(np.sum(terms, axis=0, dtype=np.float32), made | factors, error)
 
     def reset(self) -> None:
         """Forget the past, as at a cut."""
-        for denoiser in self._denoisers.values():
-            denoiser.reset()
+        self._denoisers.reset()
 
     def profile(self) -> dict[str, float]:
         """Milliseconds on the device of each pass of the last frame, all lights together."""
-        total: dict[str, float] = {}
-        for denoiser in self._denoisers.values():
-            for name, time in denoiser.profile().items():
-                total[name] = total.get(name, 0.0) + time
-        return total
+        return self._denoisers.profile()
 
     def _light(self, frame: Frame, light: Light) -> Picture:
         """A light, filtered; one that has been dark so far takes no filter."""
         if light.channels not in self._denoisers and not light.radiance.any():
             return light.radiance
         albedo = frame.albedo if light.factor is None or light.reflects else None
-        return self._filtered(light.channels, single(frame, light.radiance, albedo))
-
-    def _filtered(self, key: Channels, frame: Frame) -> Picture:
-        if key not in self._denoisers:
-            self._denoisers[key] = Denoiser(self._shape, settings=self._settings)
-        result: Picture = self._denoisers[key].denoise(frame)
-        return result
+        return self._denoisers.denoise(light.channels, single(frame, light.radiance, albedo))
 
     def _error(self, factors: Mapping[Channels, Picture | None]) -> Picture | None:
         """The standard error of the sum of lights, by their channels and factors, whose noise is independent."""
         squares = []
-        for key, denoiser in self._denoisers.items():
-            if key in factors and STANDARD_ERROR in denoiser.stages:
-                factor = factors[key]
-                share = 1.0 if factor is None else factor @ np.array(LUMINANCE, np.float32)
-                squares.append(np.square(denoiser.stage(STANDARD_ERROR) * share))
+        for key, factor in factors.items():
+            error = self._denoisers.stage(key, STANDARD_ERROR)
+            if error is not None:
+                squares.append(np.square(error if factor is None else error * (factor @ WEIGHTS)))
         return np.sqrt(np.sum(squares, axis=0, dtype=np.float32)) if squares else None
 
 

@@ -2,7 +2,8 @@
 
 Renderers average albedo, normals and depth over the same samples as light. Under depth of field and motion blur they
 are as noisy as light is, and the albedo of a rough mirror is that of whatever a sample reflected. Each of them goes
-through the filter itself, as light without surfaces: what noise changes from frame to frame is smoothed, the rest stays.
+through the filter itself, as light without surfaces: what noise changes from frame to frame is smoothed, the rest is
+kept.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from svgf_cl.denoiser import Denoiser
+from svgf_cl.denoisers import Denoisers
 from svgf_cl.filters import DEFAULT
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.shot import Light
@@ -64,11 +65,15 @@ class Prefilter:
         (height, width) in pixels.
     noise : Noise
         What is filtered beside albedo, which always is.
+    share : float
+        As of `Denoisers`.
     """
 
-    def __init__(self, shape: Shape, noise: Noise) -> None:
-        self._shape, self._noise = shape, noise
-        self._denoisers: dict[str, Denoiser] = {}
+    def __init__(self, shape: Shape, noise: Noise, share: float = 1.0) -> None:
+        self._noise = noise
+        self._denoisers = Denoisers(shape, DEFAULT(), share)
+        self._flat = np.zeros((*shape, 3), np.float32)
+        self._flat[..., 2] = 1.0
 
     def frame(self, frame: Frame) -> Frame:
         """The same frame with better guides."""
@@ -78,12 +83,13 @@ class Prefilter:
         if self._noise.surfaces:
             normal = 2.0 * self._filtered("normal", frame, 0.5 * frame.normal + 0.5) - 1.0
             length = np.linalg.norm(normal, axis=-1, keepdims=True)
-            better["normal"] = np.where(length > LEAST_NORMAL, normal / np.maximum(length, LEAST_NORMAL), 0.0)
+            hit = length > LEAST_NORMAL
+            better["normal"] = np.where(hit, normal / np.maximum(length, LEAST_NORMAL), np.float32(0.0))
             with np.errstate(divide="ignore"):
-                nearness = np.where(frame.depth > 0.0, 1.0 / frame.depth, 0.0)
+                nearness = np.where(frame.depth > 0.0, 1.0 / frame.depth, np.float32(0.0))
                 smooth = self._filtered("nearness", frame, np.repeat(nearness[..., None], 3, axis=-1))
-                better["depth"] = 1.0 / np.maximum(smooth[..., 0], 0.0)
-        return replace(frame, **{name: np.asarray(value, np.float32) for name, value in better.items()})
+                better["depth"] = 1.0 / np.maximum(smooth[..., 0], np.float32(0.0))
+        return replace(frame, **better)
 
     def lights(self, frame: Frame, lights: Sequence[Light]) -> tuple[Light, ...]:
         """The same lights with better factors; those that are seen directly become ones to be filtered."""
@@ -98,20 +104,10 @@ class Prefilter:
 
     def reset(self) -> None:
         """Forget the past, as at a cut."""
-        for denoiser in self._denoisers.values():
-            denoiser.reset()
+        self._denoisers.reset()
 
     def _filtered(self, name: str, frame: Frame, value: Array) -> Array:
         """A guide (H, W, 3), filtered as light that lies on no surface."""
-        if name not in self._denoisers:
-            self._denoisers[name] = Denoiser(self._shape, settings=DEFAULT())
-        flat = np.zeros((*self._shape, 3), np.float32)
-        flat[..., 2] = 1.0
-        whole = Frame(
-            color=np.asarray(value, np.float32),
-            normal=flat,
-            depth=np.ones(self._shape, np.float32),
-            motion=np.ascontiguousarray(frame.motion[..., :2]),
-        )
-        result: Array = self._denoisers[name].denoise(whole)
-        return result
+        depth, motion = self._flat[..., 2], frame.motion[..., :2]
+        whole = Frame(color=np.asarray(value, np.float32), normal=self._flat, depth=depth, motion=motion)
+        return self._denoisers.denoise(name, whole)

@@ -14,6 +14,7 @@ from svgf_cl.prefilter import Effort, Noise, Prefilter
 
 # Of pixels that are darker than the sum of their lights: where they are more, the passes are not parts of the picture.
 STRAY = 0.01
+GUIDES = 4  # denoisers beside those of lights and their factors, at most: albedo, normals, depth, the rest of the light
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,8 @@ class ShotDenoiser:
 
     def __init__(self, shot: Shot, method: Method) -> None:
         self._shot, self._method = shot, method
-        self._lights = LightsDenoiser(shot.shape, method.settings)
+        self._share = 1.0 / (GUIDES + 2 * max(1, len(shot.reading.lights)))
+        self._lights = LightsDenoiser(shot.shape, method.settings, self._share)
         self._prefilter: Prefilter | None = None
         self._has_parts: bool | None = None if method.lights else False
 
@@ -94,7 +96,7 @@ class ShotDenoiser:
         if self._prefilter is None and self._method.prefilter != "off":
             averaged = self._shot.reading.reader.averages(source.image)
             noise = Noise.told(frame, self._method.prefilter, averaged=averaged)
-            self._prefilter = Prefilter(self._shot.shape, noise)
+            self._prefilter = Prefilter(self._shot.shape, noise, self._share)
         return self._prefilter
 
 

@@ -21,7 +21,7 @@ from svgf_cl.errors import ArgumentError, DeviceError, FrameError, SvgfError, sh
 from svgf_cl.filters import DEFAULT
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.signals import Inputs
-from svgf_cl.frame import Frame, Shape, extent
+from svgf_cl.frame import ALPHA, Frame, Shape, extent
 from svgf_cl.plan import Workplace
 from svgf_cl.tile_plan import Events, TilePlan
 
@@ -155,16 +155,18 @@ class TiledDenoiser:
             raise SvgfError(f"denoise(frame): expected a Frame, got {type(frame).__name__}")
         with self._in_turn() as (plan, arrays):
             self._check(frame, out)
-            result = np.empty((*self._shape, 3), np.float32) if out is None else out
+            result = np.empty(frame.picture_shape, np.float32) if out is None else out
+            if frame.has_alpha:
+                result[..., 3] = frame.layer(ALPHA)
             self._events, events = [], []
             with opencl_errors(self._queue.device, "denoise", NOT_BEGUN):
                 plan.begin_frame(first=self._is_cut)
                 for tile in plan.tiles:
                     fields = {name: part_of(frame, name, tile) for name in plan.pipeline.fields}
-                    buffers = arrays.buffers(fields, self._picture)
-                    with arrays.in_use(buffers, self._picture):
-                        events += plan.run(tile, fields["motion"], buffers)
-                    result[tile.kept] = self._picture[tile.around()]
+                    exchange = arrays.exchange(fields, self._picture)
+                    with arrays.in_use(exchange, self._picture):
+                        events += plan.run(tile, fields["motion"], exchange.buffers)
+                    result[tile.kept][..., :3] = self._picture[tile.around()]
                 plan.end_frame()
             self._is_cut, self._events = False, events
         return result
@@ -237,7 +239,7 @@ class TiledDenoiser:
             raise ArgumentError("denoise(frame)", f"the fields {self._inputs}", str(inputs))
         if out is None:
             return
-        check_out(out, (*self._shape, 3))
+        check_out(out, frame.picture_shape)
         if not isinstance(out, np.ndarray):
             raise ArgumentError("denoise(out)", "a numpy.ndarray, as frames in tiles are", "a device array")
         for name, value in given.items():
@@ -247,7 +249,7 @@ class TiledDenoiser:
 
 def part_of(frame: Frame, name: str, tile: Tile) -> np.ndarray:
     """What a frame's field holds of a tile's window, as kernels read it."""
-    part = as_read(name, getattr(frame, name)[tile.window])
+    part = as_read(name, frame.layer(name)[tile.window])
     assert isinstance(part, np.ndarray)
     return part
 
