@@ -125,13 +125,14 @@ def whole_numbers(path: Path, plane: Plane) -> npt.NDArray[np.uint32]:
     """Return ids as integers; `FileError` unless they are, or are whole numbers that float32 holds exactly."""
     if plane.dtype == np.uint32:
         return plane.astype(np.uint32, copy=False)
-    fits = (plane >= 0) & (plane <= MAX_ID) & (plane == np.floor(plane))
+    numbers = plane.astype(np.float32, copy=False)  # 16 bits cannot be compared with MAX_ID
+    fits = (numbers >= 0) & (numbers <= MAX_ID) & (numbers == np.floor(numbers))
     if not fits.all():
         raise FileError(
-            f"{path}: expected whole numbers in 0..{MAX_ID} in channel id, got {plane[~fits][0]}; "
+            f"{path}: expected whole numbers in 0..{MAX_ID} in channel id, got {numbers[~fits][0]}; "
             "an id up to 4294967295 takes a channel of unsigned integers"
         )
-    return plane.astype(np.uint32)
+    return numbers.astype(np.uint32)
 
 
 def needed(field: str) -> tuple[str, ...]:
