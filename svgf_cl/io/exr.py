@@ -69,13 +69,13 @@ def write_image(path: Path, image: Image) -> None:
 def _pixels(data: Window, index: int, part: Part) -> Any:
     """What the library must know to write the pixels of a part."""
     window = part.elsewhere or data
+    first, last = (window.x, window.y), (window.x + window.width - 1, window.y + window.height - 1)
     header = {
         "compression": OpenEXR.Compression(COMPRESSIONS.index(part.lossless_compression)),
         "type": OpenEXR.scanlineimage,
-        "dataWindow": (
-            np.array([window.x, window.y], np.int32),
-            np.array([window.x + window.width - 1, window.y + window.height - 1], np.int32),
-        ),
+        "dataWindow": (np.array(first, np.int32), np.array(last, np.int32)),
+        # Not yet the right one, but that of all parts, as it must be.
+        "displayWindow": (np.zeros(2, np.int32), np.zeros(2, np.int32)),
     }
     planes = {part.stored.get(name, name): np.ascontiguousarray(plane) for name, plane in part.planes.items()}
     return OpenEXR.Part(header, planes, str(index))  # two of one name would not be written
