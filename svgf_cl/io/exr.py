@@ -24,7 +24,7 @@ from svgf_cl.io.exr_header import (
 )
 from svgf_cl.io.exr_layout import Layout, layout_of
 from svgf_cl.io.image import COMPRESSIONS, Image, Part, Plane, Windows, new_image
-from svgf_cl.io.layers import unique_names
+from svgf_cl.io.layers import in_usual_order, unique_names
 from svgf_cl.io.window import Window
 
 # A file that claims more bytes of pixels than these is refused, unless it is so large that they can be in it: no method
@@ -167,7 +167,7 @@ def _planes(path: Path, layouts: Sequence[Layout]) -> list[dict[str, Plane]]:
         raise FileError(f"{path}: expected an image that fits into memory, got a larger one") from error
     except Exception as error:  # of whatever type the library's are
         raise FileError(f"{path}: expected a whole image, got a damaged one ({one_line(error)})") from error
-    found = [{name: part.channels[name].pixels for name in part.channels} for part in parts]
+    found = [{name: part.channels[name].pixels for name in in_usual_order(part.channels)} for part in parts]
     claimed = [
         {
             name: ((layout.windows.data.height, layout.windows.data.width), channel.dtype)

@@ -220,11 +220,12 @@ def test_an_error_of_the_block_comes_before_those_of_its_jobs() -> None:
 
 
 WRITE_FOR_EVER = """
-import itertools, sys
+import itertools, signal, sys
 from pathlib import Path
 import numpy as np
 from svgf_cl.io.exr import write_channels
 from svgf_cl.io.overlap import Writers, ahead
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background processes ignore it
 planes = {"R": np.random.default_rng(0).random((400, 600), np.float32)}
 with Writers(2) as writers:
     for number in ahead(itertools.count(), 3):
