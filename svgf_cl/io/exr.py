@@ -93,8 +93,16 @@ def _has_header(path: Path) -> bool:
 
 
 def is_exr(path: Path) -> bool:
-    """Whether what is at `path` is a file that says it is an OpenEXR file; errors of `read_image` where none is."""
+    """Whether what is at `path` is a file that says it is an OpenEXR file.
+
+    Raises
+    ------
+    FileError
+        There is nothing, or it cannot be read.
+    """
     require(path)
+    if not path.is_file():  # but a pipe, which might keep us waiting for ever
+        return False
     try:
         with path.open("rb") as file:
             return file.read(len(MAGIC)) == MAGIC
