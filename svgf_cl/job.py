@@ -153,7 +153,7 @@ def result(shot: Shot, source: ShotFrame, denoised: Denoised, style: Style) -> I
         planes[STANDARD_ERROR] = placed(denoised.standard_error, shot.window, own, 0.0)
     if style.layer:
         planes = {in_layer(name, shot.reading.view_layer, style.layer): plane for name, plane in planes.items()}
-    return denoised_file(planes, source.image, plain=style.plain)
+    return denoised_file(planes, source.image, beside=shot.reading.picture[0], plain=style.plain)
 
 
 def in_layer(channel: str, view_layer: str, layer: str) -> str:

@@ -1,15 +1,15 @@
 """`Prefilter`: takes the noise out of what guides the filter, before the light is filtered.
 
-Renderers average albedo, normals and depth over the same samples as light. Under depth of field and motion blur they
-are as noisy as light is, and the albedo of a rough mirror is that of whatever a sample reflected. Each of them goes
-through the filter itself, as light without surfaces: what noise changes from frame to frame is smoothed, the rest is
-kept.
+The albedo of a rough mirror is that of whatever a sample reflected. Under depth of field, motion blur and fog, and
+where rays go through random places of their pixels, depth and the factors of light passes are noisy, too. Each of them
+goes through the filter itself, as light without surfaces: what noise changes from frame to frame is smoothed, the rest
+is kept.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -24,36 +24,27 @@ Array = npt.NDArray[np.float32]
 Effort = Literal["auto", "on", "off"]
 EFFORTS: tuple[Effort, ...] = ("auto", "on", "off")
 
-# A mean of unit normals is shorter than 1. Where so many of those that were hit are, it is not edges alone that are
-# means of several surfaces: there is depth of field, motion blur or fog.
-SHORT, SHARE = 0.98, 0.04
-LEAST_NORMAL = 0.3  # of the length of a normal that was hit: less is mostly background
+LEAST_LENGTH = 1e-6  # of a normal
+# Albedos below it stay as they are: those of lamps, from which light must not leak into their surroundings.
+BLACK = 0.01
+# Along a row of pixels on a plane, one over depth rises evenly. By this share of it a pixel is off if depth is noisy.
+UNEVEN = 5e-4
+PLANE = 0.999  # cosine between normals of one plane
+HOLES = 0.02  # share of pixels that hit nothing between two that did: rays that were scattered before they hit
 
 
-@dataclass(frozen=True)
-class Noise:
-    """Which guides of a shot are noisy.
-
-    Parameters
-    ----------
-    surfaces : bool
-        Normals and depth.
-    factors : bool
-        Albedos that light passes are multiplied by, and light that is seen directly.
-    """
-
-    surfaces: bool
-    factors: bool
-
-    @classmethod
-    def told(cls, frame: Frame, effort: Effort, *, averaged: bool) -> Noise:
-        """Tell it from the first frame, and from whether its pixels are means over several places."""
-        if effort != "auto":
-            return cls(effort == "on", effort == "on")
-        length = np.linalg.norm(frame.normal, axis=-1)
-        hit = length > 0.0
-        is_mixed = float((hit & (length < SHORT)).sum()) > SHARE * max(1, int(hit.sum()))
-        return cls(averaged, averaged and is_mixed)
+def has_noisy_depth(frame: Frame) -> bool:
+    """Whether the depth of a frame is noisy."""
+    hit = np.any(frame.normal, axis=-1) & (frame.depth > 0.0) & np.isfinite(frame.depth)
+    left, middle, right = (np.s_[:, place : frame.shape[1] - 2 + place] for place in range(3))
+    if (hit[left] & ~hit[middle] & hit[right]).sum() > HOLES * hit.size:
+        return True
+    unit = frame.normal / np.maximum(np.linalg.norm(frame.normal, axis=-1, keepdims=True), LEAST_LENGTH)
+    is_flat = [np.sum(unit[side] * unit[middle], axis=-1) > PLANE for side in (left, right)]
+    plane = hit[left] & hit[middle] & hit[right] & is_flat[0] & is_flat[1]
+    nearness = 1.0 / np.where(hit, frame.depth, 1.0).astype(np.float64)
+    bend = np.abs(nearness[left] - 2.0 * nearness[middle] + nearness[right])[plane] / nearness[middle][plane]
+    return bend.size > 0 and float(np.median(bend)) > UNEVEN
 
 
 class Prefilter:
@@ -63,14 +54,14 @@ class Prefilter:
     ----------
     shape : (int, int)
         (height, width) in pixels.
-    noise : Noise
-        What is filtered beside albedo, which always is.
+    is_noisy : bool
+        Whether depth, factors of lights and light that is seen directly are filtered, too; albedo always is.
     share : float
         As of `Denoisers`.
     """
 
-    def __init__(self, shape: Shape, noise: Noise, share: float = 1.0) -> None:
-        self._noise = noise
+    def __init__(self, shape: Shape, *, is_noisy: bool, share: float = 1.0) -> None:
+        self._is_noisy = is_noisy
         self._denoisers = Denoisers(shape, DEFAULT(), share)
         self._flat = np.zeros((*shape, 3), np.float32)
         self._flat[..., 2] = 1.0
@@ -79,12 +70,9 @@ class Prefilter:
         """The same frame with better guides."""
         better: dict[str, Array] = {}
         if frame.albedo is not None:
-            better["albedo"] = self._filtered("albedo", frame, frame.albedo)
-        if self._noise.surfaces:
-            normal = 2.0 * self._filtered("normal", frame, 0.5 * frame.normal + 0.5) - 1.0
-            length = np.linalg.norm(normal, axis=-1, keepdims=True)
-            hit = length > LEAST_NORMAL
-            better["normal"] = np.where(hit, normal / np.maximum(length, LEAST_NORMAL), np.float32(0.0))
+            is_black = frame.albedo.max(axis=-1, keepdims=True) < BLACK
+            better["albedo"] = np.where(is_black, frame.albedo, self._filtered("albedo", frame, frame.albedo))
+        if self._is_noisy:
             with np.errstate(divide="ignore"):
                 nearness = np.where(frame.depth > 0.0, 1.0 / frame.depth, np.float32(0.0))
                 smooth = self._filtered("nearness", frame, np.repeat(nearness[..., None], 3, axis=-1))
@@ -93,7 +81,7 @@ class Prefilter:
 
     def lights(self, frame: Frame, lights: Sequence[Light]) -> tuple[Light, ...]:
         """The same lights with better factors; those that are seen directly become ones to be filtered."""
-        if not self._noise.factors:
+        if not self._is_noisy:
             return tuple(lights)
         factors: dict[tuple[str, ...], Array] = {}
         for light in lights:

@@ -10,7 +10,7 @@ from svgf_cl.filters.filter import Filter
 from svgf_cl.frame import Frame
 from svgf_cl.io.shot import Light, Shot, ShotFrame
 from svgf_cl.lights import Denoised, LightsDenoiser, Picture, remainder
-from svgf_cl.prefilter import Effort, Noise, Prefilter
+from svgf_cl.prefilter import Effort, Prefilter, has_noisy_depth
 
 # Of pixels that are darker than the sum of their lights: where they are more, the passes are not parts of the picture.
 STRAY = 0.01
@@ -27,8 +27,8 @@ class Method:
     lights : bool
         Whether the light passes that a picture is the sum of are denoised one by one; else the picture as a whole.
     prefilter : {"auto", "on", "off"}
-        Whether noise is taken out of normals, depth and the factors of light passes: "auto" does it where they are
-        means over several places in a pixel. Albedo is filtered unless it is "off".
+        Whether noise is taken out of depth and the factors of light passes: "auto" does it where the depth of the first
+        frame is noisy. Albedo is filtered unless it is "off".
     """
 
     settings: Filter
@@ -70,7 +70,7 @@ class ShotDenoiser:
         rest = remainder(frame, source.lights) if source.lights and self._has_parts is not False else None
         if self._has_parts is None:
             self._has_parts = rest is not None and is_sum(rest)
-        prefilter = self._prefilter_for(frame, source)
+        prefilter = self._prefilter_for(frame)
         guided = prefilter.frame(frame) if prefilter else frame
         if rest is None or not self._has_parts:
             return self._lights.whole(guided)
@@ -92,11 +92,10 @@ class ShotDenoiser:
             return self._prefilter.lights(frame, lights)
         return [replace(light, reflects=False) for light in lights]
 
-    def _prefilter_for(self, frame: Frame, source: ShotFrame) -> Prefilter | None:
+    def _prefilter_for(self, frame: Frame) -> Prefilter | None:
         if self._prefilter is None and self._method.prefilter != "off":
-            averaged = self._shot.reading.reader.averages(source.image)
-            noise = Noise.told(frame, self._method.prefilter, averaged=averaged)
-            self._prefilter = Prefilter(self._shot.shape, noise, self._share)
+            is_noisy = self._method.prefilter == "on" or has_noisy_depth(frame)
+            self._prefilter = Prefilter(self._shot.shape, is_noisy=is_noisy, share=self._share)
         return self._prefilter
 
 

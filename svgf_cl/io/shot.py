@@ -16,10 +16,9 @@ from svgf_cl.camera import Camera, motion_from_cameras
 from svgf_cl.errors import FileError
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.cameras import camera_of_header, cameras_beside, read_cameras
-from svgf_cl.io.exr import MAX_DISPLAY, read_image, read_windows
-from svgf_cl.io.exr_header import read_attributes
+from svgf_cl.io.exr import MAX_DISPLAY, read_attributes, read_image, read_windows
 from svgf_cl.io.image import Image, Plane, Windows
-from svgf_cl.io.reading import LightPass, ReadAs, Reading
+from svgf_cl.io.reading import LightPass, ReadAs, Reading, stacked
 from svgf_cl.io.separate import SeparateFiles
 from svgf_cl.io.sequence import after_gaps, find_frames, number_of
 from svgf_cl.io.window import Window, placed, union
@@ -182,7 +181,7 @@ class Shot(Sequence[Frame]):
             camera = self._given_cameras.get(number)
             path = next((path for path in self.paths if number_of(path) == number), None)
             if camera is None and path is not None:
-                camera = camera_of_header(read_attributes(path)[0], (self._display.height, self._display.width))
+                camera = camera_of_header(read_attributes(path), (self._display.height, self._display.width))
             self._cameras[number] = camera
         return self._cameras[number]
 
@@ -199,9 +198,9 @@ class Shot(Sequence[Frame]):
 
     def _light(self, path: Path, planes: Mapping[str, Plane], light: LightPass, own: Window) -> Light:
         """A light of a file, on the window of the shot."""
-        radiance = placed(stacked(path, planes, light.channels), own, self.window, 0.0)
+        radiance = placed(self.reading.radiance(path, planes, light), own, self.window, 0.0)
         factor = placed(stacked(path, planes, light.factor), own, self.window, 0.0) if light.factor else None
-        return Light(light.channels, radiance, factor, light.factor, light.filtered, light.reflects)
+        return Light(light.channels, radiance, factor, light.factor, light.kind.filtered, light.kind.reflects)
 
     def _check_fields(self, path: Path, frame: Frame) -> None:
         """Raise `FileError` where a frame has another set of fields than the first one."""
@@ -256,14 +255,6 @@ def open_sequence(
     files = find_frames([Path(each) for each in given], allow_gaps=allow_gaps)
     others = SeparateFiles.of({field: Path(pattern) for field, pattern in (separate or {}).items()})
     return Shot(files, ReadAs(**how), others)
-
-
-def stacked(path: Path, planes: Mapping[str, Plane], channels: Sequence[str]) -> Picture:
-    """The picture (H, W, 3) of three channels; `FileError` where the file lacks one."""
-    lost = [channel for channel in channels if channel not in planes]
-    if lost:
-        raise FileError(f"{path}: expected the light pass {' '.join(channels)} as in the first frame, found it not")
-    return np.stack([np.asarray(planes[channel], np.float32) for channel in channels], axis=-1)
 
 
 def shared_window(paths: Sequence[Path]) -> Window:

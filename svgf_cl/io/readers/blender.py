@@ -1,36 +1,25 @@
 """Blender's OpenEXR MultiLayer files, of Cycles: ``ViewLayer.Combined.R`` and so on.
 
-Conventions, found numerically on frames of Blender 4.2: Vector holds the previous position minus the current one in its
-X and Y, and the current one minus the next in Z and W, in pixels, y up. Depth is the camera's z, 1e10 where nothing
-was hit. Normal is in world space. Denoising Albedo of a sharp mirror is that of what it reflects.
+Conventions, found numerically on frames of Blender 4.2 and 5.0: Vector holds the previous position minus the current
+one in its X and Y, and the current one minus the next in Z and W, in pixels, y up. Depth is the camera's z of the first
+sample, 1e10 where nothing was hit. Normal is in world space, a mean over samples in which a miss counts as 0. Denoising
+Albedo of a sharp mirror is that of what it reflects.
 """
 
 from __future__ import annotations
-
-import re
 
 import numpy as np
 
 from svgf_cl.io.image import Image
 from svgf_cl.io.readers.passes import place
-from svgf_cl.io.readers.reader import Array, Light, Pass, Reader, has_attribute, hashes, text_attribute, without_edges
+from svgf_cl.io.readers.reader import Array, Light, Pass, Reader, has_attribute, hashes, without_edges
 
-SAMPLES = re.compile(r"cycles\..*\.samples", re.DOTALL)  # attributes, one a view layer
 NOTHING = 1e9  # depths beyond it stand for a ray that hit nothing
 
 
 def recognises(image: Image) -> bool:
     """Whether Blender says so, or a view layer has a pass called as Blender calls the picture."""
     return has_attribute(image, "BlenderMultiChannel") or any(place(name).name == "combined" for name in image.planes)
-
-
-def averages(image: Image) -> bool:
-    """Whether there was more than one sample a pixel: the only one goes through its centre."""
-    names = [name for part in image.parts for name in part.attributes]
-    samples = [
-        text_attribute(image, name) for name in names if name.startswith("cycles.") and name.endswith(".samples")
-    ]
-    return samples != ["1"] * max(1, len(samples))
 
 
 def to_previous(vector: Array) -> Array:
@@ -59,7 +48,7 @@ BLENDER = Reader(
         "albedo": (Pass(("Denoising Albedo",), 3),),
         "normal": (Pass(("Normal",), 3),),
         "depth": (Pass(("Depth",), 1, camera_depth),),
-        "motion": (Pass(("Vector",), 4, to_previous),),
+        "motion": (Pass(("Vector",), 2, to_previous),),
         "motion_to_next": (Pass(("Vector",), 4, to_next),),
         "id": (Pass(("CryptoObject00",), 4, hashes), Pass(("IndexOB", "Object Index"), 1, without_edges)),
     },
@@ -71,12 +60,19 @@ BLENDER = Reader(
         "motion": "enable View Layer Properties > Passes > Data > Vector, and turn off Render > Motion Blur, with which"
         " Blender does not write it",
     },
-    averages=averages,
     lights=(
+        # Those of Blender 5, then those of earlier versions.
+        Light(("Diffuse Direct", "Diffuse Indirect"), "Diffuse Color"),
+        Light(("Glossy Direct", "Glossy Indirect"), "Glossy Color", reflects=True),
+        Light(("Transmission Direct", "Transmission Indirect"), "Transmission Color", reflects=True),
+        Light(("Volume Direct", "Volume Indirect")),
+        Light(("Emission",), filtered=False),
+        Light(("Environment",), filtered=False, is_background=True),
         Light(("DiffDir", "DiffInd"), "DiffCol"),
         Light(("GlossDir", "GlossInd"), "GlossCol", reflects=True),
         Light(("TransDir", "TransInd"), "TransCol", reflects=True),
         Light(("VolumeDir", "VolumeInd")),
-        Light(("Emit", "Env"), filtered=False),
+        Light(("Emit",), filtered=False),
+        Light(("Env",), filtered=False, is_background=True),
     ),
 )

@@ -57,6 +57,5 @@ OWN = Reader(
         field: (Exactly(names, (OPTIONAL,), whole_numbers if field == "id" else None),)
         for field, names in CHANNEL_NAMES.items()
     },
-    averages=lambda image: False,  # all rays of a frame go through one place of their pixels
     lights=(Light(("direct", "indirect")), Light(("emission",), filtered=False)),
 )

@@ -132,12 +132,15 @@ class Light:
         Whether it is noisy; else it passes through, as light that the camera sees directly does.
     reflects : bool
         Whether it is seen in the surface, as in a mirror, and the albedo of what is seen there is still in it.
+    is_background : bool
+        Whether it is behind everything: it is no part of a picture with a transparent film, where alpha is below 1.
     """
 
     names: tuple[str, ...]
     factor: str | None = None
     filtered: bool = True
     reflects: bool = False
+    is_background: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -160,9 +163,6 @@ class Reader:
         Their sum is the picture.
     complete : callable, optional
         Makes fields of what the passes hold, where that takes more than one of them.
-    averages : callable
-        Whether a pixel of an image is a mean over several places in it, so that what guides the filter is a mixture at
-        edges, and noisy under depth of field and motion blur.
     """
 
     name: str
@@ -172,7 +172,6 @@ class Reader:
     switches: Mapping[str, str] = field(default_factory=dict)
     lights: tuple[Light, ...] = ()
     complete: Complete | None = None
-    averages: Callable[[Image], bool] = lambda image: True
 
     def sources(self, found: Found) -> dict[str, tuple[Source, tuple[str, ...]]]:
         """The source of each field that is there, and its channels; `ValueError` where one is there in part."""
