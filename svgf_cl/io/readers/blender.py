@@ -47,7 +47,7 @@ BLENDER = Reader(
         "albedo": (Pass(("Denoising Albedo",), 3),),
         "normal": (Pass(("Normal",), 3),),
         "depth": (Pass(("Depth",), 1, camera_depth),),
-        "motion": (Pass(("Vector",), 4, to_previous),),
+        "motion": (Pass(("Vector",), 2, to_previous),),
         "motion_to_next": (Pass(("Vector",), 4, to_next),),
         "id": (Pass(("CryptoObject00",), 4, hashes), Pass(("IndexOB", "Object Index"), 1, without_edges)),
     },
@@ -65,5 +65,11 @@ BLENDER = Reader(
         Light(("TransDir", "TransInd"), "TransCol"),
         Light(("VolumeDir", "VolumeInd")),
         Light(("Emit", "Env"), filtered=False),
+        # Since Blender 5:
+        Light(("Diffuse Direct", "Diffuse Indirect"), "Diffuse Color"),
+        Light(("Glossy Direct", "Glossy Indirect"), "Glossy Color"),
+        Light(("Transmission Direct", "Transmission Indirect"), "Transmission Color"),
+        Light(("Volume Direct", "Volume Indirect")),
+        Light(("Emission", "Environment"), filtered=False),
     ),
 )
