@@ -16,13 +16,12 @@ from svgf_cl.frame import CHANNELS, REQUIRED, Frame
 from svgf_cl.io.image import Image
 from svgf_cl.io.look_alikes import advice, grouped
 from svgf_cl.io.readers import reader_called, reader_of
-from svgf_cl.io.readers.own import CHANNEL_NAMES, needed
+from svgf_cl.io.readers.own import CHANNEL_NAMES, OWN, needed
 from svgf_cl.io.readers.passes import by_view_layer, called, plain
-from svgf_cl.io.readers.reader import HELPERS, Array, Found, Pass, Reader, Source, Values
+from svgf_cl.io.readers.reader import HELPERS, Array, Found, Pass, Reader, Source, Values, without_edges
 
 # Components that a field has at least.
 SIZES = {field: max(1, min(sizes)) for field, sizes in CHANNELS.items()} | HELPERS
-
 
 CAMERAS = "give the camera of each frame in cameras.json beside the frames, or with --cameras FILE"
 STILL = "if the camera and all things stand still, give --still-camera"
@@ -197,17 +196,21 @@ class Reading:
 
     def _chosen_layer(self, path: Path) -> str:
         """The name of the view layer that is read."""
-        having = [
-            name
-            for name, passes in self._layers.items()
-            if any(source.find(Found((), passes)) for source in self.reader.passes["color"])
-        ]
-        wanted = self.how.view_layer
-        if wanted is not None and wanted not in self._layers:
-            raise FileError(f"{path}: expected a view layer {wanted!r}, found {', '.join(having) or 'none'}")
-        if wanted is None and len(having) > 1:
-            raise FileError(f"{path}: expected one view layer, found {', '.join(having)}; choose with --view-layer")
-        return wanted if wanted is not None else "".join(having)
+        wanted, layers = self.how.view_layer, self._possible_layers()
+        if wanted is not None:
+            if wanted not in self._layers:
+                raise FileError(f"{path}: expected a view layer {wanted!r}, found {', '.join(layers) or 'none'}")
+            return wanted
+        if len(layers) > 1:
+            raise FileError(f"{path}: expected one view layer, found {', '.join(layers)}; choose with --view-layer")
+        return layers[0] if layers else ""
+
+    def _possible_layers(self) -> list[str]:
+        """The view layers that have a picture and more; without any such those with a picture, or with anything."""
+        found = {name: self.reader.sources(Found((), passes)).keys() for name, passes in self._layers.items()}
+        with_picture = [name for name, fields in found.items() if "color" in fields]
+        with_more = [name for name in with_picture if len(found[name]) > 1]
+        return with_more or with_picture or [name for name, fields in found.items() if fields]
 
     def _mapped(self, separate: Mapping[str, tuple[str, ...]]) -> dict[str, tuple[Source, tuple[str, ...]]]:
         """The sources that the user names; what is known of the renderer's own holds for them, too."""
@@ -217,19 +220,22 @@ class Reading:
             size, what = SIZES[name], self.how.passes.get(name, "in its file")
             if len(channels) < size:
                 raise ValueError(f"{name}: expected a pass of {size} components, found {len(channels)} ({what})")
-            usual = next(iter(self.reader.passes.get(name, ())), None)
-            source = Pass((name,), size, usual.convert if usual else None)
+            usual = [source for source in self.reader.passes.get(name, ()) if source.size <= len(channels)]
+            convert = usual[0].convert if usual else without_edges if name == "id" else None
+            source = Pass((name,), usual[0].size if usual else size, convert)
             found[name] = source, source.used(channels)
         return found
 
     def _absent(self, path: Path, fields: list[str], planes: Mapping[str, Array]) -> FileError:
         """The error for fields that are missing; it says what the file has, and what to do in the renderer."""
         switches = self.reader.switches
-        lacks_cameras = {"depth", "motion"} & set(fields) and {"position", "distance"} & self.sources.keys()
-        hints = [CAMERAS] if lacks_cameras else [switches[field] for field in fields if field in switches]
-        unknown = {field: needed(field) for field in fields if field not in switches and field in CHANNEL_NAMES}
+        measured = {"depth", "position", "distance"} & self.sources.keys()  # cameras tell motion by one of them
+        written = [field for field in fields if field in self.reader.passes or not measured]
+        hints = [switches[field] for field in written if field in switches]
+        hints += [CAMERAS] if measured and {"depth", "motion"} & set(fields) else []
+        unknown = {field: needed(field) for field in fields if self.reader is OWN and field in CHANNEL_NAMES}
         hints += [text] if (text := advice(planes, unknown)) else []
-        hints += [STILL] if "motion" in fields else []
+        hints += [STILL] if "motion" in fields and "depth" not in fields else []
         wanted = " ".join(name for names in unknown.values() for name in names)
         expected = f"channels {wanted}" if unknown else f"{', '.join(fields)} in a file of {self.reader.title}"
         return FileError("; ".join([f"{path}: expected {expected}, found {grouped(planes)}", *dict.fromkeys(hints)]))
