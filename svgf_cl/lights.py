@@ -3,14 +3,14 @@
 A pass such as Blender's DiffDir is light before it was multiplied by an albedo that has no noise, DiffCol. It is
 filtered as it is and multiplied afterwards: textures never pass through the filter, and shadows of direct light are
 not blurred by the noise of indirect light. What the picture has beyond the passes of its file is filtered as one more
-light.
+light. Where the passes add up to more than the picture, they are darkened to it before they are filtered.
 """
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -82,9 +82,11 @@ class LightsDenoiser:
         SvgfError
             As `Denoiser.denoise`.
         """
+        lights = [finite(light) for light in lights]
         if not lights or not self._checked(frame, lights):
-            picture = self._filtered(WHOLE, frame)
-            return Denoised(picture, {}, self._error(WHOLE))
+            whole = replace(frame, direct=None, indirect=None, emission=None) if lights else frame
+            return Denoised(self._filtered(WHOLE, whole), {}, self._error(WHOLE))
+        lights = limited(frame, lights)
         made = {light.channels: self._light(frame, light) for light in lights if light.filtered}
         terms = [multiplied(made.get(light.channels, light.radiance), light.factor) for light in lights]
         rest = remainder(frame, lights)
@@ -152,6 +154,31 @@ class LightsDenoiser:
 def single(frame: Frame, light: Picture, albedo: Picture | None) -> Frame:
     """A frame of one light."""
     return Frame(color=light, normal=frame.normal, depth=frame.depth, motion=frame.motion, albedo=albedo, id=frame.id)
+
+
+def finite(light: Light) -> Light:
+    """The light, black where it or its factor is not finite, as the filter has it."""
+    factor = None if light.factor is None else zeroed(light.factor)
+    return replace(light, radiance=zeroed(light.radiance), factor=factor)
+
+
+def zeroed(values: Picture) -> Picture:
+    """The values, 0 in place of those that are not finite."""
+    usable = np.isfinite(values)
+    return values if usable.all() else np.where(usable, values, np.float32(0.0))
+
+
+def limited(frame: Frame, lights: Sequence[Light]) -> Sequence[Light]:
+    """The lights, no brighter together than the picture: noisy ones are darkened where they are, all by one share.
+
+    There the renderer clamped a firefly in the picture but not in the pass, or something covers a part of the pixel.
+    """
+    excess = np.maximum(-remainder(frame, lights), 0.0)
+    if not excess.any():
+        return lights
+    noisy = np.sum([multiplied(light.radiance, light.factor) for light in lights if light.filtered], axis=0)
+    share = 1.0 - np.divide(np.minimum(excess, noisy), noisy, out=np.zeros_like(noisy), where=noisy > 0.0)
+    return [replace(light, radiance=light.radiance * share) if light.filtered else light for light in lights]
 
 
 def multiplied(light: Picture, factor: Picture | None) -> Picture:
