@@ -140,7 +140,7 @@ class Shot(Sequence[Frame]):
         """
         path = self.paths[index]
         image = read_image(path)
-        planes = {**image.planes, **self._separate.planes(number_of(path))}
+        planes = {**image.planes, **self._separate.planes(number_of(path), image.windows.data)}
         frame = self.reading.frame(path, planes, *self._cameras_at(index, image.windows))
         self._check_fields(path, frame)
         check_usable(path, frame)
