@@ -164,7 +164,7 @@ class Reading:
         if lost:
             raise self._absent(path, [name], planes)
         try:
-            value = source.read([planes[channel] for channel in channels])
+            value = source.read([single_precision(planes[channel]) for channel in channels])
         except ValueError as error:
             raise FileError(f"{path}: {error}") from error
         if name in ("motion", "motion_to_next"):
@@ -241,6 +241,11 @@ class Reading:
         return FileError("; ".join([f"{path}: expected {expected}, found {grouped(planes)}", *dict.fromkeys(hints)]))
 
 
+def single_precision(plane: Array) -> Array:
+    """A plane of floats as float32, one of integers as it is."""
+    return plane if plane.dtype.kind in "ui" else np.asarray(plane, np.float32)
+
+
 def sum_of(pictures: Iterable[Array]) -> npt.NDArray[np.float32]:
     """The sum of pictures (H, W, 3)."""
     total: npt.NDArray[np.float32] = np.sum(list(pictures), axis=0, dtype=np.float32)
@@ -261,6 +266,7 @@ def derived(values: Values, camera: Camera | None, previous: Camera | None, *, s
     """
     found: Values = {}
     position, depth = values.get("position"), values.get("depth")
+    position = None if position is None else np.where(np.isfinite(position), position, np.nan)
     missed = ~np.any(values["normal"], axis=-1) if "normal" in values else np.False_
     if depth is None and camera is not None:
         if position is not None:
