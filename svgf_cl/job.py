@@ -127,14 +127,14 @@ def run(job: Job, warm_up: int = 0, look: Look | None = None) -> Iterator[Done]:
         As of `Denoiser.denoise`.
     """
     shot = Shot(job.paths, job.how, job.separate)
-    denoiser = ShotDenoiser(shot, job.method)
+    denoiser = ShotDenoiser(shot.shape, job.method, len(shot.reading.lights))
     for index, target in enumerate(job.targets):
         source = shot.read(index)
         if look:
             look(shot, index, source)
         if index in shot.cuts:
             denoiser.reset()
-        denoised = denoiser.denoise(source)
+        denoised = denoiser.denoise(source.frame, source.lights)
         if index >= warm_up:
             kept = write(target, result(shot, source, denoised, job.style))
             if job.style.png:

@@ -3,13 +3,13 @@
 A pass such as Blender's DiffDir is light before it was multiplied by an albedo that has no noise, DiffCol. It is
 filtered as it is and multiplied afterwards: textures never pass through the filter, and shadows of direct light are
 not blurred by the noise of indirect light. What the picture has beyond the passes of its file is filtered as one more
-light.
+light. Where the passes add up to more than the picture, they are darkened to it before they are filtered.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -40,7 +40,7 @@ class Denoised:
     picture : (H, W, 3) float32
         Linear HDR radiance.
     lights : mapping of tuple of str to (H, W, 3) float32
-        The denoised passes, by their channels, and the passes that some are multiplied by: the picture is their sum.
+        The denoised passes, by their channels, and the factors of passes that were filtered; the picture is their sum.
     standard_error : (H, W) float32, optional
         Of the picture's luminance, where the filter tells it.
     """
@@ -92,9 +92,8 @@ class LightsDenoiser:
         terms.append(np.minimum(rest, 0.0))
         if rest.max(initial=0.0) > 0.0 or REST in self._denoisers:
             terms.append(self._denoisers.denoise(REST, single(frame, np.maximum(rest, 0.0), frame.albedo)))
-        factors = {light.factor_channels: light.factor for light in lights if light.factor is not None}
         error = self._error({light.channels: light.factor for light in lights} | {REST: None})
-        return Denoised(np.sum(terms, axis=0, dtype=np.float32), made | factors, error)
+        return Denoised(np.sum(terms, axis=0, dtype=np.float32), made, error)
 
     def reset(self) -> None:
         """Forget the past, as at a cut."""
@@ -124,6 +123,31 @@ class LightsDenoiser:
 def single(frame: Frame, light: Picture, albedo: Picture | None) -> Frame:
     """A frame of one light."""
     return Frame(color=light, normal=frame.normal, depth=frame.depth, motion=frame.motion, albedo=albedo, id=frame.id)
+
+
+def finite(light: Light) -> Light:
+    """The light, black where it or its factor is not finite, as the filter has it."""
+    factor = None if light.factor is None else zeroed(light.factor)
+    return replace(light, radiance=zeroed(light.radiance), factor=factor)
+
+
+def zeroed(values: Picture) -> Picture:
+    """The values, 0 in place of those that are not finite."""
+    usable = np.isfinite(values)
+    return values if usable.all() else np.where(usable, values, np.float32(0.0))
+
+
+def limited(frame: Frame, lights: Sequence[Light]) -> Sequence[Light]:
+    """The lights, no brighter together than the picture: noisy ones are darkened where they are, all by one share.
+
+    There the renderer clamped a firefly in the picture but not in the pass, or something covers a part of the pixel.
+    """
+    excess = np.maximum(-remainder(frame, lights), 0.0)
+    if not excess.any():
+        return lights
+    noisy = np.sum([multiplied(light.radiance, light.factor) for light in lights if light.filtered], axis=0)
+    share = 1.0 - np.divide(np.minimum(excess, noisy), noisy, out=np.zeros_like(noisy), where=noisy > 0.0)
+    return [replace(light, radiance=light.radiance * share) if light.filtered else light for light in lights]
 
 
 def multiplied(light: Picture, factor: Picture | None) -> Picture:

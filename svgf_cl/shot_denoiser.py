@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from svgf_cl.filters.filter import Filter
-from svgf_cl.frame import Frame
-from svgf_cl.io.shot import Light, Shot, ShotFrame
-from svgf_cl.lights import Denoised, LightsDenoiser, Picture, remainder
+from svgf_cl.frame import Frame, Shape
+from svgf_cl.io.shot import Light
+from svgf_cl.lights import Channels, Denoised, LightsDenoiser, Picture, finite, limited, remainder
 from svgf_cl.prefilter import Effort, Prefilter, has_noisy_depth
 
 # Of pixels that are darker than the sum of their lights: where they are more, the passes are not parts of the picture.
@@ -41,40 +41,45 @@ class ShotDenoiser:
 
     Parameters
     ----------
-    shot : Shot
+    shape : (int, int)
+        (height, width) in pixels.
     method : Method
+    lights : int
+        How many light passes frames have.
     """
 
-    def __init__(self, shot: Shot, method: Method) -> None:
-        self._shot, self._method = shot, method
-        self._share = 1.0 / (GUIDES + 2 * max(1, len(shot.reading.lights)))
-        self._lights = LightsDenoiser(shot.shape, method.settings, self._share)
+    def __init__(self, shape: Shape, method: Method, lights: int = 0) -> None:
+        self._method = method
+        self._share = 1.0 / (GUIDES + 2 * lights)  # each light may have a factor that is filtered, too
+        self._shape = shape
+        self._lights = LightsDenoiser(shape, method.settings, self._share)
         self._prefilter: Prefilter | None = None
-        self._has_parts: bool | None = None if method.lights else False
+        self._has_parts: bool | None = None
 
-    def denoise(self, source: ShotFrame, motion: Picture | None = None) -> Denoised:
+    def denoise(self, frame: Frame, lights: Sequence[Light] = ()) -> Denoised:
         """Denoise the next frame.
 
         Parameters
         ----------
-        source : ShotFrame
-        motion : (H, W, 2 or 3) float32, optional
-            In place of the frame's own, to the frame that was denoised before.
+        frame : Frame
+        lights : sequence of Light
+            What its picture is the sum of; none to filter the picture as a whole.
 
         Raises
         ------
         SvgfError
             As of `Denoiser.denoise`.
         """
-        frame = source.frame if motion is None else replace(source.frame, motion=motion)
-        rest = remainder(frame, source.lights) if source.lights and self._has_parts is not False else None
+        lights = [finite(light) for light in lights] if self._method.lights else []
         if self._has_parts is None:
-            self._has_parts = rest is not None and is_sum(rest)
-        prefilter = self._prefilter_for(frame)
-        guided = prefilter.frame(frame) if prefilter else frame
-        if rest is None or not self._has_parts:
-            return self._lights.whole(guided)
-        return self._lights.parts(guided, self._guided_lights(frame, source.lights), rest)
+            self._has_parts = bool(lights) and is_sum(remainder(frame, lights))
+        guided = self._guided(frame)
+        if not self._has_parts:  # light that is seen directly may be of another picture, too
+            return self._lights.whole(replace(guided, direct=None, indirect=None, emission=None) if lights else guided)
+        limits = limited(frame, lights)
+        better = self._guided_lights(frame, limits)
+        denoised = self._lights.parts(guided, better, remainder(frame, limits))
+        return replace(denoised, lights={**denoised.lights, **new_factors(limits, better)})
 
     def reset(self) -> None:
         """Forget the past, as at a cut."""
@@ -86,17 +91,29 @@ class ShotDenoiser:
         """Milliseconds on the device of each pass of the last frame, all lights together."""
         return self._lights.profile()
 
+    def _guided(self, frame: Frame) -> Frame:
+        """The frame with better guides."""
+        if self._method.prefilter == "off":
+            return frame
+        if self._prefilter is None:
+            is_noisy = self._method.prefilter == "on" or has_noisy_depth(frame)
+            self._prefilter = Prefilter(self._shape, is_noisy=is_noisy, share=self._share)
+        return self._prefilter.frame(frame)
+
     def _guided_lights(self, frame: Frame, lights: Sequence[Light]) -> Sequence[Light]:
         """Lights with better factors; without a prefilter, the albedo of what is reflected is too noisy to be used."""
         if self._prefilter:
             return self._prefilter.lights(frame, lights)
         return [replace(light, reflects=False) for light in lights]
 
-    def _prefilter_for(self, frame: Frame) -> Prefilter | None:
-        if self._prefilter is None and self._method.prefilter != "off":
-            is_noisy = self._method.prefilter == "on" or has_noisy_depth(frame)
-            self._prefilter = Prefilter(self._shot.shape, is_noisy=is_noisy, share=self._share)
-        return self._prefilter
+
+def new_factors(before: Sequence[Light], after: Sequence[Light]) -> dict[Channels, Picture]:
+    """The factors of lights that are others than before, by their channels."""
+    return {
+        new.factor_channels: new.factor
+        for old, new in zip(before, after, strict=True)
+        if new.factor is not None and new.factor is not old.factor
+    }
 
 
 def is_sum(rest: Picture) -> bool:

@@ -22,15 +22,62 @@ def exr_bytes(
     aspect: float = 1.0,
 ) -> bytes:
     """An uncompressed file of one part, its (H, W) uint32, float16 or float32 channels as they are."""
-    names = sorted(planes, key=str.encode)
-    height, width = planes[names[0]].shape
+    every = {name: sampling.get(name, 1) for name in planes}
+    own = {**usual_attributes(planes, at, display, every, aspect), **attributes}
+    header = version(2, [*attributes, *planes]) + packed(own)
+    rows = [row(planes, every, y) for y in range(height_of(planes))]
+    return header + chunks(len(header), rows, at[1])
+
+
+def multipart_bytes(
+    parts: Mapping[str, Mapping[str, np.ndarray]],
+    attributes: Mapping[str, Attribute] = {},
+    at: tuple[int, int] = (0, 0),
+) -> bytes:
+    """An uncompressed file of several parts by their names, each with these attributes, of the same windows."""
+    header = version(2 | 0x1000, [name for planes in parts.values() for name in planes])
+    for part, planes in parts.items():
+        kind: dict[str, Attribute] = {
+            "name": ("string", part.encode()),
+            "type": ("string", b"scanlineimage"),
+            "chunkCount": ("int", struct.pack("<i", height_of(planes))),
+        }
+        header += packed({**usual_attributes(planes, at, None, dict.fromkeys(planes, 1), 1.0), **attributes, **kind})
+    header += b"\0"
+    content = [
+        struct.pack("<iii", number, at[1] + y, len(pixels)) + pixels
+        for number, planes in enumerate(parts.values())
+        for y in range(height_of(planes))
+        for pixels in [row(planes, dict.fromkeys(planes, 1), y)]
+    ]
+    return header + placed(len(header), content)
+
+
+def height_of(planes: Mapping[str, np.ndarray]) -> int:
+    return len(next(iter(planes.values())))
+
+
+def version(bits: int, names: Sequence[str]) -> bytes:
+    """What a file begins with."""
+    long = any(len(name.encode()) > 31 for name in names)
+    return struct.pack("<II", 20000630, bits | (0x400 if long else 0))
+
+
+def usual_attributes(
+    planes: Mapping[str, np.ndarray],
+    at: tuple[int, int],
+    display: Window | None,
+    every: Mapping[str, int],
+    aspect: float,
+) -> dict[str, Attribute]:
+    """The attributes that every part has."""
+    height, width = next(iter(planes.values())).shape
     window = Window(*at, width, height)
-    every = {name: sampling.get(name, 1) for name in names}
     listed = [
         name.encode() + b"\0" + struct.pack("<iB3xii", TYPES[planes[name].dtype], 0, every[name], every[name])
-        for name in names
+        for name in in_file(planes)
     ]
-    own: dict[str, Attribute] = {
+    return {
         "channels": ("chlist", b"".join(listed) + b"\0"),
         "compression": ("compression", b"\0"),
         "dataWindow": box(window),
@@ -40,25 +87,36 @@ def exr_bytes(
         "screenWindowCenter": ("v2f", struct.pack("<2f", 0.5, 0.25)),
         "screenWindowWidth": ("float", struct.pack("<f", 2.0)),
     }
-    packed = [
+
+
+def packed(attributes: Mapping[str, Attribute]) -> bytes:
+    """The header of a part."""
+    written = [
         b"%s\0%s\0%s%s" % (name.encode(), kind.encode(), struct.pack("<i", len(value)), value)
-        for name, (kind, value) in (own | dict(attributes)).items()
+        for name, (kind, value) in attributes.items()
     ]
-    long = any(len(name.encode()) > 31 for name in [*attributes, *names])
-    header = struct.pack("<II", 20000630, 2 | (0x400 if long else 0)) + b"".join(packed) + b"\0"
-    return header + chunks(len(header), [row(planes, names, every, y) for y in range(height)], at[1])
+    return b"".join(written) + b"\0"
 
 
-def row(planes: Mapping[str, np.ndarray], names: Sequence[str], every: Mapping[str, int], y: int) -> bytes:
+def in_file(planes: Mapping[str, np.ndarray]) -> list[str]:
+    """The channels in the order that a file has them in."""
+    return sorted(planes, key=str.encode)
+
+
+def row(planes: Mapping[str, np.ndarray], every: Mapping[str, int], y: int) -> bytes:
     """The pixels of a row."""
-    return b"".join(planes[name][y, :: every[name]].tobytes() for name in names if y % every[name] == 0)
+    return b"".join(planes[name][y, :: every[name]].tobytes() for name in in_file(planes) if y % every[name] == 0)
 
 
 def chunks(start: int, rows: Sequence[bytes], first: int) -> bytes:
+    """Where each row of the only part is, and the rows."""
+    return placed(start, [struct.pack("<ii", first + y, len(pixels)) + pixels for y, pixels in enumerate(rows)])
+
+
+def placed(start: int, content: Sequence[bytes]) -> bytes:
     """Where each chunk is, and the chunks."""
-    packed = [struct.pack("<ii", first + y, len(pixels)) + pixels for y, pixels in enumerate(rows)]
-    places = start + 8 * len(rows) + np.cumsum([0, *map(len, packed)])[:-1]
-    return places.astype("<u8").tobytes() + b"".join(packed)
+    places = start + 8 * len(content) + np.cumsum([0, *map(len, content)])[:-1]
+    return places.astype("<u8").tobytes() + b"".join(content)
 
 
 def box(window: Window) -> Attribute:

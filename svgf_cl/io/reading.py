@@ -16,13 +16,12 @@ from svgf_cl.frame import CHANNELS, REQUIRED, Frame
 from svgf_cl.io.image import Image
 from svgf_cl.io.look_alikes import advice, grouped
 from svgf_cl.io.readers import reader_called, reader_of
-from svgf_cl.io.readers.own import CHANNEL_NAMES, needed
+from svgf_cl.io.readers.own import CHANNEL_NAMES, OWN, needed
 from svgf_cl.io.readers.passes import by_view_layer, called, place, plain
-from svgf_cl.io.readers.reader import HELPERS, Array, Found, Light, Pass, Reader, Source, Values
+from svgf_cl.io.readers.reader import HELPERS, Array, Found, Light, Pass, Reader, Source, Values, without_edges
 
 # Components that a field has at least.
 SIZES = {field: max(1, min(sizes)) for field, sizes in CHANNELS.items()} | HELPERS
-
 
 CAMERAS = "give the camera of each frame in cameras.json beside the frames, or with --cameras FILE"
 STILL = "if the camera and all things stand still, give --still-camera"
@@ -165,7 +164,7 @@ class Reading:
         if lost:
             raise self._absent(path, [name], planes)
         try:
-            value = source.read([planes[channel] for channel in channels])
+            value = source.read([single_precision(planes[channel]) for channel in channels])
         except ValueError as error:
             raise FileError(f"{path}: {error}") from error
         if name in ("motion", "motion_to_next"):
@@ -211,17 +210,21 @@ class Reading:
 
     def _chosen_layer(self, path: Path) -> str:
         """The name of the view layer that is read."""
-        having = [
-            name
-            for name, passes in self._layers.items()
-            if any(source.find(Found((), passes)) for source in self.reader.passes["color"])
-        ]
-        wanted = self.how.view_layer
-        if wanted is not None and wanted not in self._layers:
-            raise FileError(f"{path}: expected a view layer {wanted!r}, found {', '.join(having) or 'none'}")
-        if wanted is None and len(having) > 1:
-            raise FileError(f"{path}: expected one view layer, found {', '.join(having)}; choose with --view-layer")
-        return wanted if wanted is not None else "".join(having)
+        wanted, layers = self.how.view_layer, self._possible_layers()
+        if wanted is not None:
+            if wanted not in self._layers:
+                raise FileError(f"{path}: expected a view layer {wanted!r}, found {', '.join(layers) or 'none'}")
+            return wanted
+        if len(layers) > 1:
+            raise FileError(f"{path}: expected one view layer, found {', '.join(layers)}; choose with --view-layer")
+        return layers[0] if layers else ""
+
+    def _possible_layers(self) -> list[str]:
+        """The view layers that have a picture and more; without any such those with a picture, or with anything."""
+        found = {name: self.reader.sources(Found((), passes)).keys() for name, passes in self._layers.items()}
+        with_picture = [name for name, fields in found.items() if "color" in fields]
+        with_more = [name for name in with_picture if len(found[name]) > 1]
+        return with_more or with_picture or [name for name, fields in found.items() if fields]
 
     def _mapped(self, separate: Mapping[str, tuple[str, ...]]) -> dict[str, tuple[Source, tuple[str, ...]]]:
         """The sources that the user names; what is known of the renderer's own holds for them, too."""
@@ -231,19 +234,22 @@ class Reading:
             size, what = SIZES[name], self.how.passes.get(name, "in its file")
             if len(channels) < size:
                 raise ValueError(f"{name}: expected a pass of {size} components, found {len(channels)} ({what})")
-            usual = next(iter(self.reader.passes.get(name, ())), None)
-            source = Pass((name,), size, usual.convert if usual else None)
+            usual = [source for source in self.reader.passes.get(name, ()) if source.size <= len(channels)]
+            convert = usual[0].convert if usual else without_edges if name == "id" else None
+            source = Pass((name,), usual[0].size if usual else size, convert)
             found[name] = source, source.used(channels)
         return found
 
     def _absent(self, path: Path, fields: list[str], planes: Mapping[str, Array]) -> FileError:
         """The error for fields that are missing; it says what the file has, and what to do in the renderer."""
         switches = self.reader.switches
-        lacks_cameras = {"depth", "motion"} & set(fields) and {"position", "distance"} & self.sources.keys()
-        hints = [CAMERAS] if lacks_cameras else [switches[field] for field in fields if field in switches]
-        unknown = {field: needed(field) for field in fields if field not in switches and field in CHANNEL_NAMES}
+        measured = {"depth", "position", "distance"} & self.sources.keys()  # cameras tell motion by one of them
+        written = [field for field in fields if field in self.reader.passes or not measured]
+        hints = [switches[field] for field in written if field in switches]
+        hints += [CAMERAS] if measured and {"depth", "motion"} & set(fields) else []
+        unknown = {field: needed(field) for field in fields if self.reader is OWN and field in CHANNEL_NAMES}
         hints += [text] if (text := advice(planes, unknown)) else []
-        hints += [STILL] if "motion" in fields else []
+        hints += [STILL] if "motion" in fields and "depth" not in fields else []
         wanted = " ".join(name for names in unknown.values() for name in names)
         expected = f"channels {wanted}" if unknown else f"{', '.join(fields)} in a file of {self.reader.title}"
         return FileError("; ".join([f"{path}: expected {expected}, found {grouped(planes)}", *dict.fromkeys(hints)]))
@@ -255,6 +261,11 @@ def stacked(path: Path, planes: Mapping[str, Array], channels: Sequence[str]) ->
     if lost:
         raise FileError(f"{path}: expected the light pass {grouped(channels)} as in the first frame, found it not")
     return np.stack([np.asarray(planes[channel], np.float32) for channel in channels], axis=-1)
+
+
+def single_precision(plane: Array) -> Array:
+    """A plane of floats as float32, one of integers as it is."""
+    return plane if plane.dtype.kind in "ui" else np.asarray(plane, np.float32)
 
 
 def sum_of(pictures: Iterable[Array]) -> npt.NDArray[np.float32]:
@@ -277,6 +288,7 @@ def derived(values: Values, camera: Camera | None, previous: Camera | None, *, s
     """
     found: Values = {}
     position, depth = values.get("position"), values.get("depth")
+    position = None if position is None else np.where(np.isfinite(position), position, np.nan)
     missed = ~np.any(values["normal"], axis=-1) if "normal" in values else np.False_
     if depth is None and camera is not None:
         if position is not None:

@@ -9,8 +9,9 @@ from pathlib import Path
 from svgf_cl.errors import FileError
 from svgf_cl.io.exr import read_image
 from svgf_cl.io.image import Image, Plane
-from svgf_cl.io.readers.passes import by_view_layer
+from svgf_cl.io.readers.passes import PLACES, by_view_layer
 from svgf_cl.io.sequence import find_frames, number_of
+from svgf_cl.io.window import Window
 
 
 @dataclass(frozen=True)
@@ -39,27 +40,32 @@ class SeparateFiles:
         """The channels of each field, as `planes` calls them, told from the files of one frame."""
         return {field: tuple(self._planes(field, number)) for field in self.paths}
 
-    def planes(self, number: int) -> dict[str, Plane]:
-        """The channels of all fields of a frame.
+    def planes(self, number: int, window: Window) -> dict[str, Plane]:
+        """The channels of all fields of a frame, whose pixels lie on this data window.
 
         Raises
         ------
         FileError
-            The frame has no file of a field, or that has no pass or several.
+            The frame has no file of a field, or that has no pass or several, or another data window.
         """
-        return {name: plane for field in self.paths for name, plane in self._planes(field, number).items()}
+        return {name: plane for field in self.paths for name, plane in self._planes(field, number, window).items()}
 
-    def _planes(self, field: str, number: int) -> dict[str, Plane]:
+    def _planes(self, field: str, number: int, window: Window | None = None) -> dict[str, Plane]:
         files = self.paths[field]
         if number not in files:
             example = next(iter(files.values()))
             raise FileError(f"{example}: expected a file of {field} for frame {number} beside it, found none")
-        image = read_image(files[number])
-        return {f"{field} {index}": image.planes[name] for index, name in enumerate(pass_of(files[number], image))}
+        path, image = files[number], read_image(files[number])
+        if window not in (None, image.windows.data):
+            raise FileError(f"{path}: expected the data window {window} of its frame, got {image.windows.data}")
+        return {f"{field} {index}": image.planes[name] for index, name in enumerate(pass_of(path, image))}
 
 
 def pass_of(path: Path, image: Image) -> Sequence[str]:
-    """The channels of a file's only pass, or of its picture."""
+    """The channels of a file's only pass, which may have no name, or of its picture."""
+    places = {PLACES[name.casefold()]: name for name in image.planes if name.casefold() in PLACES}
+    if len(places) == len(image.planes):
+        return [places[place] for place in sorted(places)]
     passes = [(name, channels) for layer in by_view_layer(image.planes).values() for name, channels in layer.items()]
     pictures = [channels for name, channels in passes if not name]
     if len(passes) != 1 and len(pictures) != 1:

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from svgf_cl.camera import Camera, motion_from_cameras
-from svgf_cl.errors import FileError
+from svgf_cl.errors import ArgumentError, FileError
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.cameras import camera_of_header, cameras_beside, read_cameras
 from svgf_cl.io.exr import MAX_DISPLAY, read_attributes, read_image, read_windows
@@ -145,7 +145,7 @@ class Shot(Sequence[Frame]):
         """
         path = self.paths[index]
         image = read_image(path)
-        planes = {**image.planes, **self._separate.planes(number_of(path))}
+        planes = {**image.planes, **self._separate.planes(number_of(path), image.windows.data)}
         frame = self.reading.frame(path, planes, *self._cameras_at(index, image.windows))
         self._check_fields(path, frame)
         check_usable(path, frame)
@@ -179,11 +179,22 @@ class Shot(Sequence[Frame]):
         """The camera of a frame by its number: as the user or a file beside it has it, or as its own header has it."""
         if number not in self._cameras:
             camera = self._given_cameras.get(number)
-            path = next((path for path in self.paths if number_of(path) == number), None)
-            if camera is None and path is not None:
-                camera = camera_of_header(read_attributes(path), (self._display.height, self._display.width))
+            if camera is None and number in self._numbered:
+                camera = self._camera_in(self._numbered[number])
             self._cameras[number] = camera
         return self._cameras[number]
+
+    def _camera_in(self, path: Path) -> Camera | None:
+        """The camera in the header of a frame's file, if there is one."""
+        try:
+            return camera_of_header(read_attributes(path), (self._display.height, self._display.width))
+        except ArgumentError as error:
+            raise FileError(f"{path}: {error}; give the camera in cameras.json or with --cameras FILE") from error
+
+    @cached_property
+    def _numbered(self) -> Mapping[int, Path]:
+        """The files by the numbers of their frames."""
+        return {number_of(path): path for path in self.paths}
 
     @cached_property
     def _given_cameras(self) -> Mapping[int, Camera]:

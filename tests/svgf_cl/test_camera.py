@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from svgf_cl import ArgumentError, Camera, motion_from_cameras
 from svgf_cl.camera import Axes
 from svgf_cl.io.exr_header import read_attributes
+from tests.camera_headers import HABITS, header
 
 SHAPE = (30, 40)
 ARNOLD = Path(__file__).parents[3] / "shared" / "samples" / "openexr" / "cryptomatte" / "multichannel.exr"
@@ -151,40 +152,6 @@ def test_a_camera_keeps_its_own_matrix() -> None:
 # What renderers write
 
 
-def header(
-    camera: Camera, *, forward: int = 1, low: int = 0, down: bool = True, square: bool = False, w: int = 1
-) -> tuple[np.ndarray, np.ndarray]:
-    """The matrices worldToCamera and worldToNDC of a renderer with these habits, for rows, in single precision."""
-    to_camera = np.diag((1.0, -1.0, forward, 1.0)) @ camera.world_to_view
-    (fx, fy), (cx, cy), sides = camera.focal, camera.center, np.array(SHAPE[::-1], float)
-    spans = np.full(2, sides.min()) if square else sides
-    from_middle = (np.array((cx, cy)) + 0.5 - sides / 2) / spans
-    scale = np.array((fx, -fy)) / spans
-    if not down:
-        from_middle[1], scale[1] = -from_middle[1], -scale[1]
-    if low == -1:
-        from_middle, scale = 2 * from_middle, 2 * scale
-    else:
-        from_middle += 0.5
-    projection = np.zeros((4, 4))
-    projection[[0, 1], [0, 1]] = scale
-    projection[2, 2], projection[3, 2] = 1.001 * forward, -0.1001
-    if camera.orthographic:
-        projection[3, :2], projection[3, 3] = from_middle, 1.0
-    else:
-        projection[2, :2], projection[2, 3] = from_middle * forward, w * forward
-    return to_camera.T.astype(np.float32), (to_camera.T @ projection).astype(np.float32)
-
-
-HABITS = {
-    "OpenEXR's definition": {},
-    "Arnold": {"low": -1, "down": False},
-    "pbrt": {"down": False, "square": True},
-    "Mantra": {"low": -1, "down": False, "w": -1},
-    "OpenGL": {"forward": -1, "low": -1, "down": False},
-}
-
-
 def assert_same(found: Camera, expected: Camera, tolerance: float = 1e-4) -> None:
     np.testing.assert_allclose(found.world_to_view, expected.world_to_view, atol=tolerance)
     np.testing.assert_allclose(found.focal, expected.focal, rtol=1e-5)
@@ -201,7 +168,7 @@ def test_matrices_of_a_header_are_understood(
 ) -> None:
     whole = camera_at(turn, eye)
     camera = Camera(world_to_view=whole.world_to_view, focal=whole.focal, center=(19.5 + shift[0], 14.5 + shift[1]))
-    matrices = header(camera, **HABITS[habit])
+    matrices = header(camera, SHAPE, **HABITS[habit])
     assert_same(Camera.from_matrices(*(m.T if transposed else m for m in matrices), SHAPE), camera)
 
 
@@ -209,7 +176,7 @@ def test_matrices_of_a_header_are_understood(
 @pytest.mark.parametrize("habit", ["OpenEXR's definition", "Arnold", "pbrt"])
 def test_matrices_of_an_orthographic_camera_are_understood(habit: str, transposed: bool) -> None:
     camera = parallel((0.3, -1.0, 2.0), (3.0, 4.0, -5.0))
-    matrices = header(camera, **HABITS[habit])
+    matrices = header(camera, SHAPE, **HABITS[habit])
     assert_same(Camera.from_matrices(*(m.T if transposed else m for m in matrices), SHAPE), camera)
 
 
@@ -220,7 +187,7 @@ def test_matrices_of_a_camera_at_the_origin_are_understood(
     habit: str, transposed: bool, turn: tuple[float, float, float]
 ) -> None:
     camera = camera_at(turn, (0, 0, 0))
-    matrices = header(camera, **HABITS[habit])
+    matrices = header(camera, SHAPE, **HABITS[habit])
     assert_same(Camera.from_matrices(*(m.T if transposed else m for m in matrices), SHAPE), camera)
 
 
@@ -228,12 +195,12 @@ def test_pixels_that_are_not_square_are_understood() -> None:
     camera = Camera(
         world_to_view=camera_at((1, 2, 3), (4, 5, 6)).world_to_view, focal=(30.0, 50.0), center=(19.5, 14.5)
     )
-    assert_same(Camera.from_matrices(*header(camera), SHAPE), camera)
+    assert_same(Camera.from_matrices(*header(camera, SHAPE), SHAPE), camera)
 
 
 def test_matrices_that_are_not_of_one_camera_are_refused() -> None:
-    camera, ndc = header(camera_at((1, 2, 3), (4, 5, 6)))
-    other, _ = header(camera_at((1, 2, 2), (4, 5, 6)))
+    camera, ndc = header(camera_at((1, 2, 3), (4, 5, 6)), SHAPE)
+    other, _ = header(camera_at((1, 2, 2), (4, 5, 6)), SHAPE)
     with pytest.raises(ArgumentError, match=r"world_to_ndc\): expected the projection of a camera"):
         Camera.from_matrices(other, ndc, SHAPE)
     with pytest.raises(ArgumentError, match=r"world_to_camera\): expected a rotation and a translation without scale"):
@@ -249,7 +216,7 @@ def test_matrices_that_are_not_of_one_camera_are_refused() -> None:
 def test_an_optical_axis_far_from_the_middle_is_refused() -> None:
     away = Camera(world_to_view=np.eye(4), focal=(30.0, 30.0), center=(19.5 + 11.0, 14.5))
     with pytest.raises(ArgumentError, match=r"expected an optical axis near \(0, 0\) or \(0.5, 0.5\), got \(0.77"):
-        Camera.from_matrices(*header(away), SHAPE)
+        Camera.from_matrices(*header(away, SHAPE), SHAPE)
 
 
 def test_the_matrices_of_pbrt_are_understood_in_its_left_handed_world() -> None:

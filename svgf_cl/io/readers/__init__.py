@@ -13,7 +13,7 @@ from svgf_cl.io.readers.reader import Reader
 from svgf_cl.io.readers.vray import VRAY
 
 # In the order in which they are asked whether a file is theirs.
-READERS: dict[str, Reader] = {reader.name: reader for reader in (BLENDER, MITSUBA, PBRT, ARNOLD, VRAY, OWN)}
+READERS: dict[str, Reader] = {reader.name: reader for reader in (OWN, BLENDER, MITSUBA, PBRT, ARNOLD, VRAY)}
 
 
 def reader_of(image: Image) -> Reader:

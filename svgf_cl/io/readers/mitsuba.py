@@ -18,7 +18,7 @@ MITSUBA = Reader(
         "color": (Pass(("", "img", "image"), 3),),
         "albedo": (Pass(("albedo", "alb"), 3),),
         "normal": (Pass(("nn", "sh_normal", "shn", "ns", "normal", "normals", "n", "gn", "geo_normal"), 3),),
-        "distance": (Pass(("dd", "depth", "dd.y", "dist", "distance", "t", "z"), 1),),
+        "distance": (Pass(("dd", "depth", "dist", "distance", "t", "z"), 1),),
         "position": (Pass(("pp", "position", "pos", "p"), 3),),
     },
     switches={

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from svgf_cl.frame import REQUIRED
 from svgf_cl.io.image import Image
 from svgf_cl.io.readers.reader import Array, Exactly, Light, Reader
 
@@ -30,9 +31,8 @@ def needed(field: str) -> tuple[str, ...]:
 
 
 def recognises(image: Image) -> bool:
-    """Whether the image has one of the fields that nothing but these names are used for."""
-    planes = image.planes.keys()
-    return any(planes >= set(needed(field)) for field in ("normal", "depth", "motion"))
+    """Whether the image has all the fields that a frame needs beside its light."""
+    return all(image.planes.keys() >= set(needed(field)) for field in REQUIRED)
 
 
 def whole_numbers(plane: Array) -> Array:

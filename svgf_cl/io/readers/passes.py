@@ -46,13 +46,25 @@ def place(channel: str) -> Place:
     return Place(view_layer, plain(name), PLACES[component.casefold()])
 
 
+def layer_of(channel: str) -> str:
+    """The name of the layer that a channel is a component of, as the file has it; "" for the picture without one."""
+    return "" if channel in PICTURE else split(channel)[0]
+
+
 def by_view_layer(channels: Iterable[str]) -> dict[str, Passes]:
-    """Group channels by view layer and pass; files without view layers have one, called ""."""
-    places = sorted((place(channel), channel) for channel in channels)
+    """Group channels by view layer and pass; files without view layers have one, called "".
+
+    Of passes whose names differ in capitals, spaces and signs alone, and of channels that are the same component of a
+    pass, the first by the alphabet is taken.
+    """
+    layers: dict[str, dict[int, str]] = {}
+    for channel in sorted(channels):
+        layers.setdefault(layer_of(channel), {}).setdefault(place(channel).component, channel)
     found: dict[str, dict[str, Channels]] = {}
-    for (view_layer, name, _), channel in places:
-        passes = found.setdefault(view_layer, {})
-        passes[name] = (*passes.get(name, ()), channel)
+    for components in layers.values():
+        own = tuple(components[index] for index in sorted(components))
+        view_layer, name, _ = place(own[0])
+        found.setdefault(view_layer, {}).setdefault(name, own)
     return dict(found)
 
 

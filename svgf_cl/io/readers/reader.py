@@ -40,6 +40,10 @@ class Source(Protocol):
         """What it may be called."""
 
     @property
+    def size(self) -> int:
+        """Components that it has at least."""
+
+    @property
     def convert(self) -> Convert | None:
         """What makes ours of its array."""
 
@@ -103,6 +107,11 @@ class Exactly:
     names: tuple[str, ...]
     optional: tuple[str, ...] = ()
     convert: Convert | None = None
+
+    @property
+    def size(self) -> int:
+        """Components that it has at least."""
+        return len(self.names) - len(set(self.optional) & set(self.names))
 
     def find(self, found: Found) -> tuple[str, ...]:
         """Those that are there."""
