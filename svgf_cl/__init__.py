@@ -7,6 +7,8 @@ from svgf_cl.errors import ArgumentError, DeviceError, FileError, FrameError, Se
 from svgf_cl.filters import Accumulation, Eaw, Kalman, Lbf, Sbf, Settings
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Frame
+from svgf_cl.look_ahead import look_ahead
+from svgf_cl.next_motion import motion_to_next
 
 __all__ = [
     "Accumulation",
@@ -27,5 +29,7 @@ __all__ = [
     "Tuning",
     "check_frame",
     "check_sequence",
+    "look_ahead",
+    "motion_to_next",
 ]
 __version__ = "0.1.0"
