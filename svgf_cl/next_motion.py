@@ -54,14 +54,13 @@ def motion_to_next(frame: Frame, following: Frame) -> Plane:
         check_on_host(each)
     following.check(frame.shape)
     surface, points = Surface.of(frame), Points.of(following)
-    channels = points.motion.shape[-1]
-    total, weights = np.zeros((channels, surface.size)), np.zeros(surface.size)
+    total, weights = np.zeros((len(points.motion), surface.size)), np.zeros(surface.size)
     for dx, dy in CORNERS:
         place = points.place + (dy * surface.shape[1] + dx)
         weight = points.weight(dx, dy) * surface.shows(points, place)
         weights += np.bincount(place, weight, surface.size)
-        for channel in range(channels):
-            total[channel] += np.bincount(place, weight * points.motion[:, channel], surface.size)
+        for sums, component in zip(total, points.motion, strict=True):
+            sums += np.bincount(place, weight * component, surface.size)
     with np.errstate(invalid="ignore"):
         return surface.inside(-total / weights)  # 0 / 0 is NaN
 
@@ -134,8 +133,8 @@ class Points:
         How far each lies from there, 0..1.
     depth : (m,)
         Expected there; 0 where nothing was hit.
-    motion : (m, 2) or (m, 3)
-        Of the frame.
+    motion : (2, m) or (3, m)
+        Of the frame, component by component.
     id : (m,), optional
     """
 
@@ -154,12 +153,13 @@ class Points:
         x = np.arange(width, dtype=np.float32) + motion[..., 0]
         y = np.arange(height, dtype=np.float32)[:, None] + motion[..., 1]
         known = over_channels(np.logical_and, np.isfinite(motion)) & (x > -1) & (x < width) & (y > -1) & (y < height)
-        x, y, motion, depth = x[known], y[known], motion[known], known_depth(frame)[known]
-        if motion.shape[-1] == 3:
-            depth = np.where(depth > 0, depth + motion[:, 2], 0)
+        x, y, depth = x[known], y[known], known_depth(frame)[known]
+        components = np.stack([component[known] for component in np.moveaxis(motion, -1, 0)])
+        if len(components) == 3:
+            depth = np.where(depth > 0, depth + components[2], 0)
         left, top = np.floor(x), np.floor(y)
         place = (top.astype(np.int64) + 1) * (width + 2) + left.astype(np.int64) + 1
-        return cls(place, x - left, y - top, depth, motion, None if frame.id is None else frame.id[known])
+        return cls(place, x - left, y - top, depth, components, None if frame.id is None else frame.id[known])
 
     def weight(self, dx: int, dy: int) -> Plane:
         """Bilinear weight of the pixel so far right of and below `place`, (m,)."""
