@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import ClassVar
+
+import numpy as np
 
 from svgf_cl.filters import operations
 from svgf_cl.filters.operations import DISTANCE, EXP, LightOperations
 from svgf_cl.filters.pipeline import PAST, Access, Life, Number, Pass, Pipeline, Quantity, Resource, access, user
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.filters.taps import BLOCK, CROSS, HERE, footprint, grid
+from svgf_cl.filters.temporal import Plane
 from svgf_cl.filters.wavelet import WaveletFilter
 from svgf_cl.settings import documented, number, switch
 
@@ -264,6 +267,10 @@ class Kalman(WaveletFilter):
     def age(self, inputs: Inputs) -> Access:
         """What antialiasing wants to know of the past: one over the number of samples that the history stands for."""
         return access(self.state(inputs), "moments", {"inverse_count": grid(1)})
+
+    def uncertainty(self, stage: Callable[[str], Plane]) -> Plane:
+        """As every filter's, by the state; of several signals the mean."""
+        return np.asarray(stage("inverse_count").mean(axis=0))
 
     def state(self, inputs: Inputs) -> Resource:
         """What is known of the light: its mean, the mean's variance, and what the next frame needs to go on."""

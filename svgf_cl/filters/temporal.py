@@ -5,7 +5,11 @@ Equations: docs/algorithm.md, sections 1, 2, 5 and 6.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
 
 from svgf_cl.errors import SettingsError
 from svgf_cl.filters import operations
@@ -15,6 +19,8 @@ from svgf_cl.filters.pipeline import OUT, PAST, Access, Life, Pass, Quantity, Re
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.filters.taps import CROSS, HERE, footprint, grid
 from svgf_cl.settings import number, switch
+
+Plane = NDArray[np.float32]
 
 UNKNOWN = -1e30  # in TAA's history before the first frame: less than KNOWN of taa.cl, and finite, so 0 times it is 0
 
@@ -191,6 +197,18 @@ class TemporalFilter(Filter):
     def age(self, inputs: Inputs) -> Access:
         """What antialiasing wants to know of the past: how long the history is."""
         return access(self.moments(inputs), taps={"length": grid(1)})
+
+    def uncertainty(self, stage: Callable[[str], Plane]) -> Plane:
+        """Variance of the light that is kept of each pixel, in units of that of a sample, (H, W).
+
+        Parameters
+        ----------
+        stage : callable
+            Reads a stage of the last frame, as `Denoiser.stage` does.
+        """
+        least = self.alpha_color / (2 - self.alpha_color)  # that of a mean whose newest sample always counts alpha
+        variance: Plane = np.maximum(1 / np.maximum(stage("history_length"), 1), np.float32(least))
+        return variance
 
     def taa_pass(self, inputs: Inputs, picture: Resource) -> Pass:
         """Temporal antialiasing."""
