@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable
 
 import numpy as np
 import numpy.typing as npt
@@ -38,9 +38,6 @@ class Denoisers:
     def __contains__(self, key: Hashable) -> bool:
         return key in self._made
 
-    def __iter__(self) -> Iterator[Hashable]:
-        return iter(self._made)
-
     def denoise(self, key: Hashable, frame: Frame) -> Picture:
         """Denoise the next frame of the sequence called `key`; errors as of `Denoiser.denoise`."""
         if key not in self._made:
@@ -48,10 +45,13 @@ class Denoisers:
         picture: Picture = self._made[key].denoise(frame)
         return picture
 
-    def stage(self, key: Hashable, name: str) -> Picture | None:
-        """An intermediate result of the last frame called `key`; None where there is none of that name."""
-        made = self._made.get(key)
-        return made.stage(name) if made and name in made.stages else None
+    def has_stage(self, key: Hashable, name: str) -> bool:
+        """Whether the last frame called `key` has an intermediate result of that name."""
+        return key in self._made and name in self._made[key].stages
+
+    def stage(self, key: Hashable, name: str) -> Picture:
+        """An intermediate result of the last frame called `key`; errors as of `Denoiser.stage`."""
+        return self._made[key].stage(name)
 
     def reset(self) -> None:
         """Forget the past of all, as at a cut."""

@@ -9,7 +9,7 @@ light. Where the passes add up to more than the picture, they are darkened to it
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -50,6 +50,38 @@ class Denoised:
     standard_error: Picture | None = None
 
 
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """A frame, taken apart into what is filtered on its own.
+
+    Parameters
+    ----------
+    frame : Frame
+        The guides; its color is read where there are no lights.
+    lights : sequence of Light
+        Parts of the picture; none to filter it as a whole.
+    rest : (H, W, 3) float32, optional
+        What the picture has beyond the sum of the lights; below 0 where it has less.
+    factors : mapping of tuple of str to (H, W, 3) float32
+        The factors of lights that are others than in the file, by their channels.
+    """
+
+    frame: Frame
+    lights: Sequence[Light] = ()
+    rest: Picture | None = None
+    factors: Mapping[Channels, Picture] = field(default_factory=dict)
+
+    def composed(self, made: Mapping[Channels, Picture], error: Picture | None = None) -> Denoised:
+        """Put the picture together from what `LightsDenoiser.filtered` made of the parts."""
+        if self.rest is None:
+            return Denoised(made[WHOLE], {}, error)
+        terms = [multiplied(made.get(light.channels, light.radiance), light.factor) for light in self.lights]
+        terms.append(np.minimum(self.rest, 0.0))
+        terms += [made[REST]] if REST in made else []
+        lights = {light.channels: made.get(light.channels, light.radiance) for light in self.lights if light.filtered}
+        return Denoised(np.sum(terms, axis=0, dtype=np.float32), {**lights, **self.factors}, error)
+
+
 class LightsDenoiser:
     """Denoises frames of one size, light by light.
 
@@ -66,34 +98,39 @@ class LightsDenoiser:
     def __init__(self, shape: Shape, settings: Filter, share: float = 1.0) -> None:
         self._denoisers = Denoisers(shape, settings, share)
 
-    def whole(self, frame: Frame) -> Denoised:
-        """Denoise the picture of the next frame as a whole; errors as of `Denoiser.denoise`."""
-        picture = self._denoisers.denoise(WHOLE, frame)
-        return Denoised(picture, {}, self._error({WHOLE: None}))
-
-    def parts(self, frame: Frame, lights: Sequence[Light], rest: Picture) -> Denoised:
-        """Denoise the parts of the picture of the next frame.
-
-        Parameters
-        ----------
-        frame : Frame
-            Its color is not read.
-        lights : sequence of Light
-        rest : (H, W, 3) float32
-            What the picture has beyond the sum of the lights; below 0 where it has less.
+    def filtered(self, parts: Parts) -> dict[Channels, Picture]:
+        """Filter the parts of the next frame, by their channels, `REST` or `WHOLE`; one that was dark so far is left.
 
         Raises
         ------
         SvgfError
             As `Denoiser.denoise`.
         """
-        made = {light.channels: self._light(frame, light) for light in lights if light.filtered}
-        terms = [multiplied(made.get(light.channels, light.radiance), light.factor) for light in lights]
-        terms.append(np.minimum(rest, 0.0))
-        if rest.max(initial=0.0) > 0.0 or REST in self._denoisers:
-            terms.append(self._denoisers.denoise(REST, single(frame, np.maximum(rest, 0.0), frame.albedo)))
-        error = self._error({light.channels: light.factor for light in lights} | {REST: None})
-        return Denoised(np.sum(terms, axis=0, dtype=np.float32), made, error)
+        frame, rest = parts.frame, parts.rest
+        if rest is None:
+            return {WHOLE: self._denoisers.denoise(WHOLE, frame)}
+        made = {}
+        for light in parts.lights:
+            if light.filtered and (light.channels in self._denoisers or light.radiance.any()):
+                albedo = frame.albedo if light.factor is None or light.reflects else None
+                made[light.channels] = self._denoisers.denoise(light.channels, single(frame, light.radiance, albedo))
+        if REST in self._denoisers or rest.max(initial=0.0) > 0.0:
+            made[REST] = self._denoisers.denoise(REST, single(frame, np.maximum(rest, 0.0), frame.albedo))
+        return made
+
+    def stage(self, key: Channels, name: str) -> Picture:
+        """An intermediate result of the last frame of a part; errors as of `Denoiser.stage`."""
+        return self._denoisers.stage(key, name)
+
+    def standard_error(self, parts: Parts) -> Picture | None:
+        """That of the sum of the parts of the last frame, (H, W), whose noise is independent; None if unknown."""
+        factors = {light.channels: light.factor for light in parts.lights}
+        squares = []
+        for key in (*factors, REST, WHOLE):
+            if self._denoisers.has_stage(key, STANDARD_ERROR):
+                error, factor = self.stage(key, STANDARD_ERROR), factors.get(key)
+                squares.append(np.square(error if factor is None else error * (factor @ WEIGHTS)))
+        return np.sqrt(np.sum(squares, axis=0, dtype=np.float32)) if squares else None
 
     def reset(self) -> None:
         """Forget the past, as at a cut."""
@@ -102,22 +139,6 @@ class LightsDenoiser:
     def profile(self) -> dict[str, float]:
         """Milliseconds on the device of each pass of the last frame, all lights together."""
         return self._denoisers.profile()
-
-    def _light(self, frame: Frame, light: Light) -> Picture:
-        """A light, filtered; one that has been dark so far takes no filter."""
-        if light.channels not in self._denoisers and not light.radiance.any():
-            return light.radiance
-        albedo = frame.albedo if light.factor is None or light.reflects else None
-        return self._denoisers.denoise(light.channels, single(frame, light.radiance, albedo))
-
-    def _error(self, factors: Mapping[Channels, Picture | None]) -> Picture | None:
-        """The standard error of the sum of lights, by their channels and factors, whose noise is independent."""
-        squares = []
-        for key, factor in factors.items():
-            error = self._denoisers.stage(key, STANDARD_ERROR)
-            if error is not None:
-                squares.append(np.square(error if factor is None else error * (factor @ WEIGHTS)))
-        return np.sqrt(np.sum(squares, axis=0, dtype=np.float32)) if squares else None
 
 
 def single(frame: Frame, light: Picture, albedo: Picture | None) -> Frame:

@@ -5,10 +5,12 @@ Equations: docs/algorithm.md, section 9.
 
 from __future__ import annotations
 
+import pickle
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +21,10 @@ from svgf_cl.filters.temporal import TemporalFilter
 from svgf_cl.frame import Frame
 from svgf_cl.next_motion import check_on_host, motion_to_next
 
+Item = TypeVar("Item")
 Plane = NDArray[np.float32]
+Key = tuple[str, ...]  # of a part of a frame: the channels of a light, say
+PICTURE = ("picture",)  # the only part of a frame that is filtered as a whole
 NextMotion = Callable[[int], Plane]
 
 
@@ -83,7 +88,8 @@ def look_ahead(
     starts = sorted(set(cuts))
     if starts and not 0 < starts[0] <= starts[-1] < len(frames):
         raise ArgumentError("look_ahead(cuts)", f"indices in 1..{len(frames) - 1}", shown(starts))
-    return Runs(frames, forward, backward, settings, next_motion).pictures(starts, ahead or max(1, len(frames)))
+    walk = FramesWalk(frames, forward, backward, settings, next_motion)
+    return (pictures[PICTURE] for _, pictures in both_ways(walk, starts, ahead))
 
 
 def check_denoisers(forward: Denoiser, backward: Denoiser) -> TemporalFilter:
@@ -97,9 +103,70 @@ def check_denoisers(forward: Denoiser, backward: Denoiser) -> TemporalFilter:
     return forward.settings
 
 
+class Walk(Protocol[Item]):
+    """A shot, and two filters that go along it, one forward and one backward in time."""
+
+    def __len__(self) -> int: ...
+
+    def item(self, index: int) -> Item:
+        """All that there is of a frame."""
+
+    def to_next(self, index: int, item: Item, later: Item) -> Plane:
+        """The motion from a frame to the next one, as `motion_to_next` returns it."""
+
+    def begin(self, *, backward: bool) -> None:
+        """Have the filter of that direction forget its past."""
+
+    def estimates(self, item: Item, motion: Plane | None, *, backward: bool) -> Mapping[Key, Estimate]:
+        """What the filter of that direction makes of each part of its next frame, with its own motion or another."""
+
+
+def both_ways(walk: Walk[Item], cuts: Sequence[int], ahead: int | None) -> Iterator[tuple[Item, dict[Key, Plane]]]:
+    """Go along a shot both ways, and average what the two filters make of each part of each frame.
+
+    Parameters
+    ----------
+    walk : Walk
+    cuts : sequence of int
+        In order; as of `look_ahead`.
+    ahead : int, optional
+        As of `look_ahead`.
+
+    Yields
+    ------
+    (Item, dict of Key to (H, W, 3) float32)
+        Each frame in order, with the means of its parts. A part that one of the filters does not have is the forward
+        one's, or is left out. Meanwhile the last frame of the forward filter is that same frame.
+    """
+    length = ahead or max(1, len(walk))
+    for first, end in zip([0, *cuts], [*cuts, len(walk)], strict=True):
+        walk.begin(backward=False)
+        for start in range(first, end, length):
+            stop = min(start + length, end)
+            yield from block(walk, start, stop, min(stop + length, end))
+
+
+def block(walk: Walk[Item], start: int, stop: int, end: int) -> Iterator[tuple[Item, dict[Key, Plane]]]:
+    """The frames from `start` to before `stop`; the backward run begins at the frame before `end`."""
+    with tempfile.TemporaryDirectory(prefix="svgf_cl-") as folder:
+        walk.begin(backward=True)
+        later: Item | None = None  # what the first one's motion leads to plays no part, for it has no history
+        for index in reversed(range(start, end)):
+            item = walk.item(index)
+            motion = None if later is None else walk.to_next(index, item, later)
+            estimates = walk.estimates(item, motion, backward=True)
+            if index < stop:
+                save(file_of(folder, index), estimates)
+            later = item
+        for index in range(start, stop):
+            item, after = walk.item(index), load(file_of(folder, index))
+            before = walk.estimates(item, None, backward=False)
+            yield item, {key: mean(one, after[key]) if key in after else one.picture for key, one in before.items()}
+
+
 @dataclass(frozen=True, eq=False)
-class Runs:
-    """Both runs over a sequence; parameters as of `look_ahead`, and `settings` those of the denoisers."""
+class FramesWalk:
+    """A walk along frames; parameters as of `look_ahead`, and `settings` those of the denoisers."""
 
     frames: Sequence[Frame]
     forward: Denoiser
@@ -107,42 +174,28 @@ class Runs:
     settings: TemporalFilter
     next_motion: NextMotion | None
 
-    def pictures(self, cuts: Sequence[int], ahead: int) -> Iterator[Plane]:
-        """All pictures, in blocks of `ahead` frames."""
-        for first, end in zip([0, *cuts], [*cuts, len(self.frames)], strict=True):
-            self.forward.reset()
-            for start in range(first, end, ahead):
-                stop = min(start + ahead, end)
-                yield from self.block(start, stop, min(stop + ahead, end))
+    def __len__(self) -> int:
+        return len(self.frames)
 
-    def block(self, start: int, stop: int, end: int) -> Iterator[Plane]:
-        """Pictures of the frames from `start` to before `stop`; the backward run begins at the frame before `end`."""
-        with tempfile.TemporaryDirectory(prefix="svgf_cl-") as folder:
-            self.backward.reset()
-            for index, frame in self.reversed_frames(start, end):
-                estimate = self.estimate(self.backward, frame)
-                if index < stop:
-                    estimate.save(file_of(folder, index))
-            for index in range(start, stop):
-                later = Estimate.load(file_of(folder, index))
-                yield mean(self.estimate(self.forward, self.frames[index]), later)
+    def item(self, index: int) -> Frame:
+        """A frame, on the host."""
+        frame = self.frames[index]
+        check_on_host(frame)
+        return frame
 
-    def reversed_frames(self, start: int, end: int) -> Iterator[tuple[int, Frame]]:
-        """Index and frame, from that before `end` down to `start`: a sequence that runs backward in time."""
-        later: Frame | None = None  # what the first one's motion leads to plays no part, for it has no history
-        for index in reversed(range(start, end)):
-            frame = self.frames[index]
-            check_on_host(frame)
-            yield index, frame if later is None else replace(frame, motion=self.motion(index, frame, later))
-            later = frame
-
-    def motion(self, index: int, frame: Frame, later: Frame) -> Plane:
+    def to_next(self, index: int, item: Frame, later: Frame) -> Plane:
         """From a frame to the next one."""
-        return motion_to_next(frame, later) if self.next_motion is None else self.next_motion(index)
+        return motion_to_next(item, later) if self.next_motion is None else self.next_motion(index)
 
-    def estimate(self, denoiser: Denoiser, frame: Frame) -> Estimate:
+    def begin(self, *, backward: bool) -> None:
+        """Forget the past."""
+        (self.backward if backward else self.forward).reset()
+
+    def estimates(self, item: Frame, motion: Plane | None, *, backward: bool) -> dict[Key, Estimate]:
         """What a run makes of its next frame."""
-        return Estimate(denoiser.denoise(frame), self.settings.uncertainty(denoiser.stage))
+        denoiser = self.backward if backward else self.forward
+        picture = denoiser.denoise(item if motion is None else replace(item, motion=motion))
+        return {PICTURE: Estimate(picture, self.settings.uncertainty(denoiser.stage))}
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,26 +212,34 @@ class Estimate:
     picture: Plane
     uncertainty: Plane
 
-    def save(self, path: Path) -> None:
-        """Write it; `FileError` where that fails."""
-        try:
-            np.save(path, np.dstack((self.picture, self.uncertainty)))
-        except OSError as error:
-            raise FileError(
-                f"{path}: cannot be written ({error.strerror or error}); set TMPDIR to a folder with more room, or "
-                "look fewer frames ahead"
-            ) from error
 
-    @classmethod
-    def load(cls, path: Path) -> Estimate:
-        """Read what `save` wrote."""
-        planes = np.load(path)
-        return cls(planes[..., :3], planes[..., 3])
+def save(path: Path, estimates: Mapping[Key, Estimate]) -> None:
+    """Write estimates; `FileError` where that fails."""
+    try:
+        with path.open("wb") as file:
+            for key, estimate in estimates.items():
+                pickle.dump(key, file)
+                np.save(file, np.dstack((estimate.picture, estimate.uncertainty)))
+    except OSError as error:
+        raise FileError(
+            f"{path}: cannot be written ({error.strerror or error}); set TMPDIR to a folder with more room, or "
+            "look fewer frames ahead"
+        ) from error
+
+
+def load(path: Path) -> dict[Key, Estimate]:
+    """Read what `save` wrote."""
+    estimates = {}
+    with path.open("rb") as file:
+        while file.peek(1):
+            key, planes = pickle.load(file), np.load(file)
+            estimates[key] = Estimate(planes[..., :3], planes[..., 3])
+    return estimates
 
 
 def file_of(folder: str, index: int) -> Path:
     """Where the backward estimate of a frame is kept."""
-    return Path(folder) / f"{index}.npy"
+    return Path(folder) / f"{index}"
 
 
 def mean(one: Estimate, other: Estimate) -> Plane:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 from svgf_cl.filters.filter import Filter
+from svgf_cl.filters.temporal import TemporalFilter
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.shot import Light
-from svgf_cl.lights import Channels, Denoised, LightsDenoiser, Picture, finite, limited, remainder
+from svgf_cl.lights import Channels, Denoised, LightsDenoiser, Parts, Picture, finite, limited, remainder
 from svgf_cl.prefilter import Effort, Prefilter, has_noisy_depth
 
 # Of pixels that are darker than the sum of their lights: where they are more, the passes are not parts of the picture.
@@ -70,16 +72,31 @@ class ShotDenoiser:
         SvgfError
             As of `Denoiser.denoise`.
         """
+        parts = self.parts(frame, lights)
+        made = self.filtered(parts)
+        return parts.composed(made, self._lights.standard_error(parts))
+
+    def parts(self, frame: Frame, lights: Sequence[Light] = ()) -> Parts:
+        """What is to be filtered of the next frame, with its guides filtered already; parameters of `denoise`."""
         lights = [finite(light) for light in lights] if self._method.lights else []
         if self._has_parts is None:
             self._has_parts = bool(lights) and is_sum(remainder(frame, lights))
         guided = self._guided(frame)
         if not self._has_parts:  # light that is seen directly may be of another picture, too
-            return self._lights.whole(replace(guided, direct=None, indirect=None, emission=None) if lights else guided)
+            return Parts(replace(guided, direct=None, indirect=None, emission=None) if lights else guided)
         limits = limited(frame, lights)
         better = self._guided_lights(frame, limits)
-        denoised = self._lights.parts(guided, better, remainder(frame, limits))
-        return replace(denoised, lights={**denoised.lights, **new_factors(limits, better)})
+        return Parts(guided, better, remainder(frame, limits), new_factors(limits, better))
+
+    def filtered(self, parts: Parts) -> dict[Channels, Picture]:
+        """Filter the parts of the next frame; errors as of `denoise`."""
+        return self._lights.filtered(parts)
+
+    def uncertainty(self, channels: Channels) -> Picture:
+        """How uncertain a part of the last frame is, (H, W), as `TemporalFilter.uncertainty` has it."""
+        settings = self._method.settings
+        assert isinstance(settings, TemporalFilter)
+        return settings.uncertainty(partial(self._lights.stage, channels))
 
     def reset(self) -> None:
         """Forget the past, as at a cut."""

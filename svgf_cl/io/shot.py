@@ -153,20 +153,18 @@ class Shot(Sequence[Frame]):
         lights = tuple(self._light(path, planes, light, own) for light in self.reading.lights)
         return ShotFrame(path, image, moved(frame, own, self.window), lights)
 
-    def motion_to_next(self, index: int, frame: Frame) -> Picture | None:
+    def motion_to_next(self, source: ShotFrame) -> Picture | None:
         """The motion of a frame to the next one, (H, W, 2 or 3), where its file or the cameras tell it."""
-        path = self.paths[index]
-        if "motion_to_next" in self.reading.sources:
-            image = read_image(path)
-            motion = self.reading.motion_to_next(path, image.planes)
-            return None if motion is None else placed(motion, image.windows.data, self.window, 0.0)
+        path, image = source.path, source.image
+        if (motion := self.reading.motion_to_next(path, image.planes)) is not None:
+            return placed(motion, image.windows.data, self.window, 0.0)
         if "motion" in self.reading.sources:
             return None
         windows = Windows(self.window, self._display)
         camera, following = (self._shifted(self._camera(number_of(path) + step), windows) for step in (0, 1))
         if camera is None or following is None:
             return None
-        return motion_from_cameras(camera, following, depth=frame.depth)
+        return motion_from_cameras(camera, following, depth=source.frame.depth)
 
     def _cameras_at(self, index: int, windows: Windows) -> tuple[Camera | None, Camera | None]:
         """The cameras of a frame and of the one before, where fields are computed from them."""
