@@ -28,7 +28,8 @@ Channels = tuple[str, ...]
 # and so are the factors and the picture.
 ROUNDING = 2.0**-9
 LEAST = 1e-6  # a difference that is nothing, where there is no light
-# Of pixels that are darker than the sum of their lights: where they are more, the passes are not parts of the picture.
+# The share of the first frame's pixels that may be darker than the sum of their lights. If it is greater, the passes
+# are not parts of the picture.
 STRAY = 0.01
 WHOLE, REST = ("picture",), ("rest",)
 

@@ -28,7 +28,8 @@ def expanded(path: Path) -> list[Path]:
     require(path.parent)
     if NUMBER.search(path.name):
         head, tail = around_number(path)
-        fits = re.compile(f"{re.escape(head)}-?[0-9]+{re.escape(tail)}")
+        minus = "-?" if not head or head[-1] in "._" else ""  # else it belongs to the name
+        fits = re.compile(f"{re.escape(head)}{minus}[0-9]+{re.escape(tail)}")
         found = [entry for entry in entries(path.parent) if fits.fullmatch(entry.name)]
     else:
         found = [entry for entry in path.parent.glob(path.name) if not entry.name.startswith(".")]

@@ -16,9 +16,10 @@ from svgf_cl.frame import CHANNELS, REQUIRED, Frame
 from svgf_cl.io.image import Image
 from svgf_cl.io.look_alikes import advice, grouped
 from svgf_cl.io.readers import reader_called, reader_of
+from svgf_cl.io.readers.conversions import Array, without_edges
 from svgf_cl.io.readers.own import CHANNEL_NAMES, OWN, needed
 from svgf_cl.io.readers.passes import by_view_layer, called, plain
-from svgf_cl.io.readers.reader import HELPERS, Array, Found, Pass, Reader, Source, Values, without_edges
+from svgf_cl.io.readers.reader import HELPERS, Found, Pass, Reader, Source, Values
 
 # Components that a field has at least.
 SIZES = {field: max(1, min(sizes)) for field, sizes in CHANNELS.items()} | HELPERS

@@ -108,7 +108,7 @@ class Shot(Sequence[Frame]):
         self._separate = separate or SeparateFiles({})
         first = read_image(self.paths[0])
         self.reading = Reading(self.paths[0], first, how or ReadAs(), self._separate.channels(number_of(self.paths[0])))
-        self._display = read_windows(self.paths[0]).display
+        self._display = first.windows.display
         self._cameras: dict[int, Camera | None] = {}
         self._fields: set[str] | None = None
 

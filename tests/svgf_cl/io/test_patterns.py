@@ -54,6 +54,14 @@ def test_a_pattern_of_two_numbers_is_refused(pattern: str, folder: Path) -> None
         expanded(folder / pattern)
 
 
+def test_a_minus_belongs_to_the_number_behind_a_dot_or_an_underscore_alone(tmp_path: Path) -> None:
+    for name in ("a1.exr", "a-2.exr", "b_1.exr", "b_-2.exr"):
+        (tmp_path / name).touch()
+    assert [path.name for path in expanded(tmp_path / "a#.exr")] == ["a1.exr"]
+    assert [path.name for path in expanded(tmp_path / "a-#.exr")] == ["a-2.exr"]
+    assert [path.name for path in expanded(tmp_path / "b_#.exr")] == ["b_-2.exr", "b_1.exr"]
+
+
 def test_signs_of_other_languages_in_a_name_are_taken_as_they_are(tmp_path: Path) -> None:
     for name in ("a+(1).1.exr", "aa1.1.exr"):
         (tmp_path / name).touch()
