@@ -218,9 +218,11 @@ class Reading:
         found: dict[str, tuple[Source, tuple[str, ...]]] = {}
         mapped = {name: called(wanted, self._channels, self.view_layer) for name, wanted in self.how.passes.items()}
         for name, channels in {**mapped, **separate}.items():
-            size, what = SIZES[name], self.how.passes.get(name, "in its file")
+            size, where = SIZES[name], self.how.passes.get(name, "its file")
+            if not channels:
+                raise ValueError(f"expected a pass or channel {where} for {name}, found {grouped(self._channels)}")
             if len(channels) < size:
-                raise ValueError(f"{name}: expected a pass of {size} components, found {len(channels)} ({what})")
+                raise ValueError(f"expected {size} components of {name} in {where}, found {len(channels)}")
             usual = [source for source in self.reader.passes.get(name, ()) if source.size <= len(channels)]
             convert = usual[0].convert if usual else without_edges if name == "id" else None
             source = Pass((name,), usual[0].size if usual else size, convert)

@@ -119,9 +119,9 @@ def test_an_id_is_mapped_to_any_pass_of_numbers(renderer: str) -> None:
 @pytest.mark.parametrize(
     ("passes", "words"),
     [
-        ({"normal": "Tiefe"}, r"shot_0002\.exr: normal: expected a pass of 3 components, found 0 \(Tiefe\)"),
-        ({"normal": "depth"}, r"normal: expected a pass of 3 components, found 1 \(depth\)"),
-        ({"motion": "normal.X"}, r"motion: expected a pass of 2 components, found 1 \(normal.X\)"),
+        ({"normal": "Tiefe"}, r"shot_0002\.exr: expected a pass or channel Tiefe for normal, found R G B normal.X Y Z"),
+        ({"normal": "depth"}, r"expected 3 components of normal in depth, found 1"),
+        ({"motion": "normal.X"}, r"expected 2 components of motion in normal.X, found 1"),
         ({"depht": "Z"}, r"--map: expected one of color, .* to be mapped, got 'depht'"),
     ],
 )
