@@ -158,17 +158,23 @@ def zeroed(values: Picture) -> Picture:
     return values if usable.all() else np.where(usable, values, np.float32(0.0))
 
 
-def limited(frame: Frame, lights: Sequence[Light]) -> Sequence[Light]:
-    """The lights, no brighter together than the picture: noisy ones are darkened where they are, all by one share.
+def limited(lights: Sequence[Light], rest: Picture) -> tuple[Sequence[Light], Picture]:
+    """The lights, no brighter together than the picture, and what it then has beyond their sum.
 
-    There the renderer clamped a firefly in the picture but not in the pass, or something covers a part of the pixel.
+    Where `rest`, what the picture has beyond the lights (H, W, 3), is negative, the renderer clamped a firefly in the
+    picture but not in the pass, or something covers a part of the pixel. Noisy lights are darkened there, all by one
+    share.
     """
-    excess = np.maximum(-remainder(frame, lights), 0.0)
-    if not excess.any():
-        return lights
-    noisy = np.sum([multiplied(light.radiance, light.factor) for light in lights if light.filtered], axis=0)
-    share = 1.0 - np.divide(np.minimum(excess, noisy), noisy, out=np.zeros_like(noisy), where=noisy > 0.0)
-    return [replace(light, radiance=light.radiance * share) if light.filtered else light for light in lights]
+    if rest.min(initial=0.0) >= 0.0:
+        return lights, rest
+    noisy = np.zeros_like(rest)
+    for light in lights:
+        if light.filtered:
+            noisy += multiplied(light.radiance, light.factor)
+    taken = np.clip(-rest, 0.0, np.maximum(noisy, 0.0))
+    share = np.float32(1.0) - np.divide(taken, noisy, out=np.zeros_like(noisy), where=taken > 0.0)
+    darker = [replace(light, radiance=light.radiance * share) if light.filtered else light for light in lights]
+    return darker, rest + taken
 
 
 def multiplied(light: Picture, factor: Picture | None) -> Picture:
@@ -178,9 +184,11 @@ def multiplied(light: Picture, factor: Picture | None) -> Picture:
 
 def remainder(frame: Frame, lights: Sequence[Light]) -> Picture:
     """What the picture has beyond the sum of its lights, (H, W, 3); 0 where that is what rounding leaves."""
-    terms = [multiplied(light.radiance, light.factor) for light in lights]
     if frame.color is None:
-        return np.zeros_like(terms[0])
-    rest: Picture = frame.color - np.sum(terms, axis=0, dtype=np.float32)
-    size = np.sum(np.abs(terms), axis=0, dtype=np.float32) + np.abs(frame.color)
+        return np.zeros_like(lights[0].radiance)
+    rest, size = np.array(frame.color), np.abs(frame.color)
+    for light in lights:
+        term = multiplied(light.radiance, light.factor)
+        rest -= term
+        size += np.abs(term)
     return np.where(np.abs(rest) > ROUNDING * size + LEAST, rest, np.float32(0.0))

@@ -78,15 +78,18 @@ class ShotDenoiser:
 
     def parts(self, frame: Frame, lights: Sequence[Light] = ()) -> Parts:
         """What is to be filtered of the next frame, with its guides filtered already; parameters of `denoise`."""
-        lights = [finite(light) for light in lights] if self._method.lights else []
-        if self._has_parts is None:
-            self._has_parts = bool(lights) and is_sum(remainder(frame, lights))
         guided = self._guided(frame)
+        if not (lights and self._method.lights):
+            return Parts(guided)
+        lights = [finite(light) for light in lights]
+        rest = remainder(frame, lights)
+        if self._has_parts is None:
+            self._has_parts = is_sum(rest)
         if not self._has_parts:  # light that is seen directly may be of another picture, too
-            return Parts(replace(guided, direct=None, indirect=None, emission=None) if lights else guided)
-        limits = limited(frame, lights)
-        better = self._guided_lights(frame, limits)
-        return Parts(guided, better, remainder(frame, limits), new_factors(limits, better))
+            return Parts(replace(guided, direct=None, indirect=None, emission=None))
+        lights, rest = limited(lights, rest)
+        better = self._guided_lights(frame, lights)
+        return Parts(guided, better, rest, new_factors(lights, better))
 
     def filtered(self, parts: Parts) -> dict[Channels, Picture]:
         """Filter the parts of the next frame; errors as of `denoise`."""

@@ -32,7 +32,7 @@ UNUSED = (*CARRIED, *PARTS, "motion_to_next")
 def described(reading: Reading, first: ShotFrame) -> str:
     """Say in one line what the frames are, which fields are read from which channels, and which are missing."""
     names = {field: found[1] for field, found in reading.sources.items() if field not in UNUSED}
-    light = [light.channels for light in reading.lights if light.kind.filtered]
+    light = [light.channels for light in reading.lights if light.filtered]
     parts = [f"read as {reading.reader.title}: {', '.join(f'{name} ({grouped(names[name])})' for name in names)}"]
     if light:
         parts.append(f"light passes: {', '.join(grouped(each) for each in light)}")

@@ -28,7 +28,8 @@ def expanded(path: Path) -> list[Path]:
     require(path.parent)
     if NUMBER.search(path.name):
         head, tail = around_number(path)
-        fits = re.compile(f"{re.escape(head)}-?[0-9]+{re.escape(tail)}")
+        minus = "-?" if not head or head[-1] in "._" else ""  # else it belongs to the name
+        fits = re.compile(f"{re.escape(head)}{minus}[0-9]+{re.escape(tail)}")
         found = [entry for entry in entries(path.parent) if fits.fullmatch(entry.name)]
     else:
         found = [entry for entry in path.parent.glob(path.name) if not entry.name.startswith(".")]
@@ -38,13 +39,21 @@ def expanded(path: Path) -> list[Path]:
 
 
 def has_number(path: Path) -> bool:
-    """Whether a name has a place for a number."""
-    return bool(NUMBER.search(path.name))
+    """Whether a name has a place for a number, and is not that of a folder which is there."""
+    return bool(NUMBER.search(path.name)) and not path.is_dir()
 
 
 def numbered(pattern: Path, number: int) -> Path:
-    """The file that a pattern means for a number, padded as the pattern says."""
+    """The EXR file that a pattern means for a number, padded as the pattern says.
+
+    Raises
+    ------
+    FileError
+        The pattern has more than one number, or does not end in ``.exr``.
+    """
     head, tail = around_number(pattern)
+    if not tail.lower().endswith(".exr"):
+        raise FileError(f"{pattern}: expected a pattern that ends in .exr, such as ####.exr, or a folder")
     match = NUMBER.search(pattern.name)
     width = 1 if match is None else len(match[0]) if match[0].startswith("#") else int(match["width"] or 1)
     return pattern.with_name(f"{head}{'-' * (number < 0)}{abs(number):0{width}d}{tail}")

@@ -16,9 +16,10 @@ from svgf_cl.frame import CHANNELS, REQUIRED, Frame
 from svgf_cl.io.image import Image
 from svgf_cl.io.look_alikes import advice, grouped
 from svgf_cl.io.readers import reader_called, reader_of
+from svgf_cl.io.readers.conversions import Array, without_edges
 from svgf_cl.io.readers.own import CHANNEL_NAMES, OWN, needed
 from svgf_cl.io.readers.passes import by_view_layer, called, place, plain
-from svgf_cl.io.readers.reader import HELPERS, Array, Found, Light, Pass, Reader, Source, Values, without_edges
+from svgf_cl.io.readers.reader import HELPERS, Found, Light, Pass, Reader, Source, Values
 
 # Components that a field has at least.
 SIZES = {field: max(1, min(sizes)) for field, sizes in CHANNELS.items()} | HELPERS
@@ -78,6 +79,11 @@ class LightPass:
     factor: tuple[str, ...]
     kind: Light
 
+    @property
+    def filtered(self) -> bool:
+        """Whether it is noisy."""
+        return self.kind.filtered
+
 
 class Reading:
     """How the files of a shot become frames.
@@ -133,7 +139,7 @@ class Reading:
         if self.reader.complete:
             values = self.reader.complete(values, camera)
         values |= derived(values, camera, previous, still=self.how.still_camera)
-        if "emission" not in values and (shining := [light for light in self.lights if not light.kind.filtered]):
+        if "emission" not in values and (shining := [light for light in self.lights if not light.filtered]):
             values["emission"] = sum_of(self.radiance(path, planes, light) for light in shining)
         missing = [name for name in REQUIRED if name not in values]
         if not values.keys() & {"color", "direct", "indirect"}:
@@ -188,7 +194,7 @@ class Reading:
                 continue
             there = [passes[name] for name in map(plain, light.names) if len(passes.get(name, ())) >= 3]
             found += [LightPass(channels[:3], factor[:3], light) for channels in there]
-        return tuple(found) if any(light.kind.filtered for light in found) else ()
+        return tuple(found) if any(light.filtered for light in found) else ()
 
     def radiance(self, path: Path, planes: Mapping[str, Array], light: LightPass) -> npt.NDArray[np.float32]:
         """A light pass as far as it is in the picture, (H, W, 3), before its factor; errors as of `frame`."""
@@ -231,9 +237,11 @@ class Reading:
         found: dict[str, tuple[Source, tuple[str, ...]]] = {}
         mapped = {name: called(wanted, self._channels, self.view_layer) for name, wanted in self.how.passes.items()}
         for name, channels in {**mapped, **separate}.items():
-            size, what = SIZES[name], self.how.passes.get(name, "in its file")
+            size, where = SIZES[name], self.how.passes.get(name, "its file")
+            if not channels:
+                raise ValueError(f"expected a pass or channel {where} for {name}, found {grouped(self._channels)}")
             if len(channels) < size:
-                raise ValueError(f"{name}: expected a pass of {size} components, found {len(channels)} ({what})")
+                raise ValueError(f"expected {size} components of {name} in {where}, found {len(channels)}")
             usual = [source for source in self.reader.passes.get(name, ()) if source.size <= len(channels)]
             convert = usual[0].convert if usual else without_edges if name == "id" else None
             source = Pass((name,), usual[0].size if usual else size, convert)

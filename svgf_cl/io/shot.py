@@ -113,7 +113,7 @@ class Shot(Sequence[Frame]):
         self._separate = separate or SeparateFiles({})
         first = read_image(self.paths[0])
         self.reading = Reading(self.paths[0], first, how or ReadAs(), self._separate.channels(number_of(self.paths[0])))
-        self._display = read_windows(self.paths[0]).display
+        self._display = first.windows.display
         self._cameras: dict[int, Camera | None] = {}
         self._fields: set[str] | None = None
 
@@ -209,7 +209,7 @@ class Shot(Sequence[Frame]):
         """A light of a file, on the window of the shot."""
         radiance = placed(self.reading.radiance(path, planes, light), own, self.window, 0.0)
         factor = placed(stacked(path, planes, light.factor), own, self.window, 0.0) if light.factor else None
-        return Light(light.channels, radiance, factor, light.factor, light.kind.filtered, light.kind.reflects)
+        return Light(light.channels, radiance, factor, light.factor, light.filtered, light.kind.reflects)
 
     def _check_fields(self, path: Path, frame: Frame) -> None:
         """Raise `FileError` where a frame has another set of fields than the first one."""

@@ -8,29 +8,8 @@ header's cameras, motion of what stands still can be had from them: leave motion
 
 from __future__ import annotations
 
-import numpy as np
-
-from svgf_cl.io.readers.reader import Array, Light, Pass, Reader, has_attribute, hashes
-
-FAR = 1e9  # depths beyond it stand for a ray that hit nothing
-
-
-def against_time(vector: Array) -> Array:
-    """The motion to the previous frame, y down, of the way made during a frame, y up."""
-    moved: Array = vector[..., :2] * np.array([-1, 1], np.float32)
-    return moved
-
-
-def along_time(vector: Array) -> Array:
-    """The motion to the next frame, y down."""
-    moved: Array = vector[..., :2] * np.array([1, -1], np.float32)
-    return moved
-
-
-def depth_of_hits(depth: Array) -> Array:
-    """Depth, infinite where nothing was hit: there Arnold writes 0, or a great number."""
-    return np.where((depth > 0) & (depth < FAR), depth, np.float32(np.inf))
-
+from svgf_cl.io.readers.conversions import against_time, along_time, depth_of_hits, hashes
+from svgf_cl.io.readers.reader import Light, Pass, Reader, has_attribute
 
 ARNOLD = Reader(
     name="arnold",

@@ -11,10 +11,9 @@ from __future__ import annotations
 import numpy as np
 
 from svgf_cl.io.image import Image
+from svgf_cl.io.readers.conversions import Array, depth_of_hits, hashes, without_edges, y_down
 from svgf_cl.io.readers.passes import place
-from svgf_cl.io.readers.reader import Array, Light, Pass, Reader, has_attribute, hashes, without_edges
-
-NOTHING = 1e9  # depths beyond it stand for a ray that hit nothing
+from svgf_cl.io.readers.reader import Light, Pass, Reader, has_attribute
 
 
 def recognises(image: Image) -> bool:
@@ -22,21 +21,10 @@ def recognises(image: Image) -> bool:
     return has_attribute(image, "BlenderMultiChannel") or any(place(name).name == "combined" for name in image.planes)
 
 
-def to_previous(vector: Array) -> Array:
-    """The motion to the previous frame, y down."""
-    moved: Array = vector[..., :2] * np.array([1, -1], np.float32)
-    return moved
-
-
 def to_next(vector: Array) -> Array:
-    """The motion to the next frame, y down."""
+    """The motion to the next frame, (H, W, 2), y down."""
     moved: Array = vector[..., 2:4] * np.array([-1, 1], np.float32)
     return moved
-
-
-def camera_depth(depth: Array) -> Array:
-    """Depth, infinite where nothing was hit."""
-    return np.where(depth < NOTHING, depth, np.float32(np.inf))
 
 
 BLENDER = Reader(
@@ -47,8 +35,8 @@ BLENDER = Reader(
         "color": (Pass(("Combined", "Image"), 3),),
         "albedo": (Pass(("Denoising Albedo",), 3),),
         "normal": (Pass(("Normal",), 3),),
-        "depth": (Pass(("Depth",), 1, camera_depth),),
-        "motion": (Pass(("Vector",), 2, to_previous),),
+        "depth": (Pass(("Depth",), 1, depth_of_hits),),
+        "motion": (Pass(("Vector",), 2, y_down),),
         "motion_to_next": (Pass(("Vector",), 4, to_next),),
         "id": (Pass(("CryptoObject00",), 4, hashes), Pass(("IndexOB", "Object Index"), 1, without_edges)),
     },

@@ -6,7 +6,8 @@ import numpy as np
 
 from svgf_cl.frame import REQUIRED
 from svgf_cl.io.image import Image
-from svgf_cl.io.readers.reader import Array, Exactly, Light, Reader
+from svgf_cl.io.readers.conversions import Array
+from svgf_cl.io.readers.reader import Exactly, Light, Reader
 
 # Channels of each field, in the order of its components; `OPTIONAL` may be missing.
 CHANNEL_NAMES: dict[str, tuple[str, ...]] = {

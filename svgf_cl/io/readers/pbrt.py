@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from svgf_cl.camera import Camera, view_axes
 from svgf_cl.io.image import Image
-from svgf_cl.io.readers.reader import Array, Exactly, Pass, Reader, Values
+from svgf_cl.io.readers.conversions import Array
+from svgf_cl.io.readers.reader import Exactly, Pass, Reader, Values
 
 SWITCH = 'render with Film "gbuffer"'
 AXES = ("renderman", "mitsuba")  # x to the right, as the format says, or to the left, as mirrored cameras have it

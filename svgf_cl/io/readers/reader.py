@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from svgf_cl.camera import Camera
 from svgf_cl.io.image import Image
+from svgf_cl.io.readers.conversions import Array
 from svgf_cl.io.readers.passes import Passes, plain
 
-Array = npt.NDArray[Any]
 Convert = Callable[[Array], Array]
 # What passes hold: fields of `Frame`, or what fields can be computed from, by name.
 Values = dict[str, Array]
@@ -192,30 +191,12 @@ class Reader:
         return sources
 
 
-def has_attribute(image: Image, *starts: str) -> bool:
+def has_attribute(image: Image, start: str) -> bool:
     """Whether the header of an image has an attribute whose name begins like that."""
-    return any(name.startswith(starts) for part in image.parts for name in part.attributes)
+    return any(name.startswith(start) for part in image.parts for name in part.attributes)
 
 
 def text_attribute(image: Image, name: str) -> str:
     """A text of an image's header; empty where there is none."""
     kind, value = image.parts[0].attributes.get(name, ("", b""))
     return value.decode(errors="replace") if kind == "string" else ""
-
-
-def without_edges(ids: Array) -> Array:
-    """Ids of an antialiased pass, where a pixel at an edge holds a mean of ids: it gets one of its neighbours'."""
-    values = np.asarray(ids, np.float64)
-    whole = (values == np.floor(values)) & (values >= 0) & (values < 2**32)
-    result = np.where(whole, values, 0)
-    if not whole.all():
-        padded = np.pad(result, 1)
-        height, width = values.shape
-        near = [padded[y : y + height, x : x + width] for y in range(3) for x in range(3)]
-        result = np.where(whole, result, np.max(near, axis=0))
-    return result.astype(np.uint32)
-
-
-def hashes(cryptomatte: Array) -> Array:
-    """The ids in the first layer of a Cryptomatte: the bits of the first of its numbers."""
-    return np.ascontiguousarray(cryptomatte[..., 0], np.float32).view(np.uint32)

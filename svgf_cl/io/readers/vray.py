@@ -8,14 +8,14 @@ the camera turns: surfaces are told apart a little less well then, and ``svgf-cl
 from __future__ import annotations
 
 from svgf_cl.io.image import Image
-from svgf_cl.io.readers.arnold import against_time, along_time, depth_of_hits
-from svgf_cl.io.readers.reader import Light, Pass, Reader, has_attribute, hashes, without_edges
+from svgf_cl.io.readers.conversions import against_time, along_time, depth_of_hits, hashes, without_edges
+from svgf_cl.io.readers.reader import Light, Pass, Reader, has_attribute
 
 
 def recognises(image: Image) -> bool:
     """Whether V-Ray says so, or a channel is called as only V-Ray does."""
     named = any(name.startswith("VRay") or name.endswith(".red") for name in image.planes)
-    return named or has_attribute(image, "vrayInfo", "vray")
+    return named or has_attribute(image, "vray")
 
 
 VRAY = Reader(

@@ -9,13 +9,35 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from svgf_cl import Frame
+from svgf_cl.compare.metrics import flip, psnr, ssim, why_no_flip
+from svgf_cl.io.display import display
 from svgf_cl.io.exr import read_channels, read_image, write_channels
 from svgf_cl.io.frames import read_frame, write_frame
 from svgf_cl.io.pictures import read_picture
+from svgf_cl.io.readers import READERS
+from svgf_cl.io.reading import ReadAs, Reading
+from svgf_cl.io.shot import stacked
 from svgf_cl.io.window import Window
 from tests.command_line import NAMES, contents, run
-from tests.exr_files import exr_bytes
+from tests.exr_files import exr_bytes, multipart_bytes
 from tests.frames import wall
+from tests.renderers import (
+    ARNOLD_HEADER,
+    BLENDER_HEADER,
+    MITSUBA_HEADER,
+    NUMBERS,
+    VRAY_HEADER,
+    arnold,
+    blender,
+    cameras_file,
+    mitsuba,
+    moments,
+    pbrt,
+    truth,
+    vray,
+    written,
+)
 
 
 def test_settings_reach_the_filter(rendered: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -198,3 +220,240 @@ def test_a_window_that_moves_over_a_still_picture_changes_nothing(tmp_path: Path
     assert windows.display == display
     assert run("compare", tmp_path / "moving out", tmp_path / "whole out") == 0
     assert run("check", tmp_path / "moving") in (0, 1)
+
+
+# Frames of other renderers
+
+
+def shots_of(folder: Path) -> dict[str, tuple[Path, list[Frame], float]]:
+    """A folder of each renderer's frames; the frames that they are, and how far pictures may be apart by rounding."""
+    ats = moments()
+    cameras_file(folder, (0, *NUMBERS))
+    vectors = [truth(at) for at in ats]
+    computed = [truth(at, "id", "emission", motion=3) for at in ats]
+    planes: dict[str, tuple[dict, dict, list[Frame], float]] = {
+        "blender": ({at.number: blender(at, "Ebene.001 ü") for at in ats}, BLENDER_HEADER, vectors, 0.0),
+        "mitsuba": ({at.number: mitsuba(at) for at in ats}, MITSUBA_HEADER, computed, 1e-2),
+        "pbrt": ({at.number: pbrt(at) for at in ats}, {}, computed, 1e-2),
+        "arnold": ({at.number: arnold(at, motion=True) for at in ats}, ARNOLD_HEADER, vectors, 0.0),
+        "vray": ({at.number: vray(at, "max") for at in ats}, VRAY_HEADER, vectors, 1e-4),
+    }
+    return {
+        name: (written(folder / name, channels, header, "frame."), frames, tolerance)
+        for name, (channels, header, frames, tolerance) in planes.items()
+    }
+
+
+@pytest.mark.parametrize("renderer", ["blender", "mitsuba", "pbrt", "arnold", "vray"])
+def test_frames_of_a_renderer_are_denoised_as_if_they_were_our_own(
+    renderer: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder, frames, tolerance = shots_of(tmp_path)[renderer]
+    for number, frame in zip(NUMBERS, frames, strict=True):
+        write_frame(tmp_path / "own" / f"frame.{number:04d}.exr", frame)
+    assert run("denoise", tmp_path / "own", "-o", tmp_path / "expected", "--no-passes") == 0
+    capsys.readouterr()
+    assert run("denoise", folder, "-o", tmp_path / "out", "--no-passes", "--plain") == 0
+    assert f"read as {READERS[renderer].title}" in capsys.readouterr().out
+    for number in NUMBERS:
+        found, expected = (read_channels(tmp_path / kind / f"frame.{number:04d}.exr") for kind in ("out", "expected"))
+        for c in "RGB":
+            np.testing.assert_allclose(found[c], expected[c], rtol=tolerance, atol=tolerance)
+
+
+@pytest.mark.parametrize("renderer", ["blender", "arnold", "vray"])
+def test_light_passes_of_a_renderer_still_add_up_and_all_else_passes_through(renderer: str, tmp_path: Path) -> None:
+    folder, *_ = shots_of(tmp_path)[renderer]
+    assert run("denoise", folder, "-o", tmp_path / "out") == 0
+    for path in sorted(folder.iterdir()):
+        before, after = read_image(path), read_image(tmp_path / "out" / path.name)
+        assert before.parts[0].attributes == after.parts[0].attributes
+        reading = Reading(path, before, ReadAs())
+        lights, picture = reading.lights, reading.picture
+        total = added_up(path, after.planes, reading)
+        np.testing.assert_allclose(total, stacked(path, after.planes, picture), rtol=1e-5, atol=1e-6)
+        denoised = {*picture, *(name for light in lights if light.filtered for name in light.channels)}
+        assert len(denoised) == 9
+        assert changed(before.planes, after.planes) == denoised
+
+
+def test_what_is_denoised_is_added_as_a_layer(tmp_path: Path) -> None:
+    folder, *_ = shots_of(tmp_path)["blender"]
+    assert run("denoise", folder, "-o", tmp_path / "out") == 0
+    assert run("denoise", folder, "-o", tmp_path / "layer", "--layer", "Denoised") == 0
+    for path in sorted(folder.iterdir()):
+        noisy, clean, both = (read_channels(p / path.name) for p in (folder, tmp_path / "out", tmp_path / "layer"))
+        assert not changed(noisy, both)
+        added = both.keys() - noisy.keys()
+        assert added == {f"Denoised.{name}.{c}" for name in ("Combined", "DiffDir", "DiffInd") for c in "RGB"}
+        for name in added:
+            np.testing.assert_array_equal(both[name], clean[f"Ebene.001 ü.{name.removeprefix('Denoised.')}"])
+
+
+def test_one_view_layer_of_two_is_denoised(tmp_path: Path, refused) -> None:
+    planes = {at.number: {**blender(at, "Set"), **blender(at, "Fog")} for at in moments()}
+    folder = written(tmp_path / "shot", planes, BLENDER_HEADER)
+    refused(
+        "expected one view layer, found Fog, Set; choose with --view-layer", "denoise", folder, "-o", tmp_path / "a"
+    )
+    refused("expected a view layer 'Sky', found Fog, Set", "denoise", folder, "-o", tmp_path, "--view-layer", "Sky")
+    assert run("denoise", folder, "-o", tmp_path / "out", "--view-layer", "Set") == 0
+    before, after = (read_channels(p / "shot_0002.exr") for p in (folder, tmp_path / "out"))
+    assert {name.split(".")[0] for name in changed(before, after)} == {"Set"}
+
+
+def test_parts_of_a_file_stay_parts(tmp_path: Path) -> None:
+    (tmp_path / "shot").mkdir()
+    for at in moments():
+        parts: dict[str, dict[str, np.ndarray]] = {}
+        for channel, plane in blender(at).items():
+            parts.setdefault(channel.rpartition(".")[0], {})[channel] = plane
+        (tmp_path / "shot" / f"{at.number:04d}.exr").write_bytes(multipart_bytes(parts, BLENDER_HEADER))
+    assert run("denoise", tmp_path / "shot", "-o", tmp_path / "out") == 0
+    before, after = (read_image(tmp_path / kind / "0002.exr") for kind in ("shot", "out"))
+    assert [part.planes.keys() for part in before.parts] == [part.planes.keys() for part in after.parts]
+    assert [part.attributes for part in before.parts] == [part.attributes for part in after.parts]
+    assert len(changed(before.planes, after.planes)) == 9
+
+
+def test_a_mistaken_format_is_told(tmp_path: Path, refused) -> None:
+    folder, *_ = shots_of(tmp_path)["arnold"]
+    refused("--format: expected svgf_cl or blender", "denoise", folder, "-o", tmp_path / "out", "--format", "maya")
+    refused("in a file of Blender (Cycles)", "denoise", folder, "-o", tmp_path / "out", "--format", "blender")
+
+
+def test_a_pass_that_a_frame_in_the_middle_lacks_ends_the_run_there(tmp_path: Path, refused) -> None:
+    planes = {at.number: blender(at) for at in moments()}
+    planes[2] = {name: plane for name, plane in planes[2].items() if ".DiffInd." not in name}
+    folder = written(tmp_path / "shot", planes, BLENDER_HEADER)
+    refused("shot_0002.exr: expected the light pass ViewLayer.DiffInd.R", "denoise", folder, "-o", tmp_path / "out")
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["shot_0001.exr"]
+
+
+# Some of the frames
+
+
+def test_a_stretch_with_the_past_of_all_frames_before_is_as_of_the_whole_shot(frames: Path, tmp_path: Path) -> None:
+    assert run("denoise", frames, "-o", tmp_path / "whole") == 0
+    for warm_up, same in ((2, True), (1000, True), (0, False)):
+        out = tmp_path / f"out{warm_up}"
+        assert run("denoise", frames, "-o", out, "--frames", "2", "--warm-up", str(warm_up)) == 0
+        assert [path.name for path in out.iterdir()] == [NAMES[2]]
+        assert ((out / NAMES[2]).read_bytes() == (tmp_path / "whole" / NAMES[2]).read_bytes()) == same
+
+
+def test_stretches_of_several_machines_meet_in_one_folder(frames: Path, tmp_path: Path) -> None:
+    assert run("denoise", frames, "-o", tmp_path / "whole") == 0
+    for span in ("0-1", "2-2"):
+        assert run("denoise", frames, "-o", tmp_path / "out", "--frames", span, "--warm-up", "2") == 0
+    assert contents(tmp_path / "out") == contents(tmp_path / "whole")
+
+
+@pytest.mark.parametrize(
+    ("span", "words"),
+    [
+        ("5-9", "--frames: expected some of 0-2, which are there, got 5-9"),
+        ("2-1", "--frames: expected FIRST-LAST"),
+        ("one", "--frames: expected FIRST-LAST"),
+    ],
+)
+def test_frames_that_are_not_there(span: str, words: str, frames: Path, tmp_path: Path, refused) -> None:
+    refused(words, "denoise", frames, "-o", tmp_path / "out", "--frames", span)
+    assert not (tmp_path / "out").exists()
+
+
+def test_negative_numbers(rendered: Path, tmp_path: Path) -> None:
+    (tmp_path / "shot").mkdir()
+    for number, name in zip((-2, -1, 0), NAMES, strict=True):
+        shutil.copy(rendered / name, tmp_path / "shot" / (f"a.-{-number:04d}.exr" if number else "a.0000.exr"))
+    assert run("denoise", tmp_path / "shot" / "a.####.exr", "-o", tmp_path / "out" / "b.%03d.exr") == 0
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["b.-001.exr", "b.-002.exr", "b.000.exr"]
+    assert run("denoise", tmp_path / "shot", "-o", tmp_path / "two", "--frames", "-2--1") == 0
+    assert sorted(path.name for path in (tmp_path / "two").iterdir()) == ["a.-0001.exr", "a.-0002.exr"]
+
+
+# Where pictures go
+
+
+@pytest.mark.parametrize("pattern", ["b.####.exr", "b.%04d.exr"])
+def test_pictures_are_named_by_a_pattern(pattern: str, frames: Path, tmp_path: Path) -> None:
+    assert run("denoise", frames / "frame.####.exr", "-o", tmp_path / "out" / pattern) == 0
+    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == [f"b.{number:04d}.exr" for number in range(3)]
+
+
+@pytest.mark.parametrize("pattern", ["frame.####.exr", "frame.%04d.exr"])
+def test_a_pattern_never_replaces_the_input(pattern: str, frames: Path, refused) -> None:
+    before = contents(frames)
+    refused("frame.0000.exr: expected an output folder other than", "denoise", frames, "-o", frames / pattern)
+    assert contents(frames) == before
+
+
+def test_a_pattern_of_two_numbers_is_refused(frames: Path, tmp_path: Path, refused) -> None:
+    refused("expected one number, as #### or %04d, got 2", "denoise", frames, "-o", tmp_path / "out" / "##.##.exr")
+
+
+def test_an_input_pattern_that_fits_nothing(frames: Path, tmp_path: Path, refused) -> None:
+    for pattern in ("x.####.exr", "x.%d.exr", "x.*.exr"):
+        refused(f"{pattern}: expected files of this pattern, found none", "denoise", frames / pattern, "-o", tmp_path)
+
+
+def test_a_layer_of_nothing_else_is_refused(frames: Path, tmp_path: Path, refused) -> None:
+    refused("--layer: expected no --plain", "denoise", frames, "-o", tmp_path / "out", "--layer", "a", "--plain")
+
+
+# What renderers wrote
+
+SAMPLES = Path(__file__).parents[4] / "shared" / "samples"
+
+
+@pytest.fixture(scope="module", params=["blender/noisy", "blender/noisy_dof_4spp", "mitsuba/noisy"])
+def sample(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """A folder of frames as a renderer wrote them, and what comes of it without any option."""
+    folder = SAMPLES / request.param
+    if not folder.exists():
+        pytest.skip(f"{folder} is not here")
+    out = tmp_path_factory.mktemp("sample") / "out"
+    assert run("denoise", folder, "-o", out) == 0
+    return folder, out
+
+
+def test_every_frame_of_a_sample_is_better_by_all_measures(sample: tuple[Path, Path]) -> None:
+    folder, out = sample
+    references = folder.parent / "reference"
+    if folder.name != "noisy":
+        pytest.skip(f"{folder} has no reference: its lens is another one")
+    for path in sorted(folder.iterdir()):
+        wanted, noisy, clean = (display(read_picture(f / path.name)) for f in (references, folder, out))
+        assert psnr(clean, wanted) > psnr(noisy, wanted) + 3
+        assert ssim(clean, wanted) > ssim(noisy, wanted) + 0.1
+        if not why_no_flip():
+            assert flip(clean, wanted) < flip(noisy, wanted)
+
+
+def test_all_but_the_light_of_a_sample_is_as_it_was_and_the_light_adds_up(sample: tuple[Path, Path]) -> None:
+    folder, out = sample
+    for path in sorted(folder.iterdir()):
+        before, after = read_image(path), read_image(out / path.name)
+        reading = Reading(path, before, ReadAs())
+        kept = {*reading.picture, *(name for light in reading.lights if light.filtered for name in light.channels)}
+        assert before.windows == after.windows
+        assert [part.attributes for part in before.parts] == [part.attributes for part in after.parts]
+        assert before.planes.keys() == after.planes.keys()
+        assert changed(before.planes, after.planes) <= kept
+        noisy, clean = (added_up(path, image.planes, reading) for image in (before, after))
+        if reading.lights:
+            # What the passes are not, in the picture, is what they were not in the noisy one, but for rounding to half.
+            rest = stacked(path, before.planes, reading.picture) - noisy
+            size = np.abs(noisy) + np.abs(clean)
+            left = np.abs(rest) > 2.0**-9 * size + 1e-6
+            off = np.abs(stacked(path, after.planes, reading.picture) - clean)
+            assert left.mean() < 0.05
+            assert (off[~left] <= 1e-5 * (1 + size[~left])).mean() > 0.95
+
+
+def added_up(path: Path, planes: dict[str, np.ndarray], reading: Reading) -> np.ndarray:
+    total = np.zeros((*next(iter(planes.values())).shape, 3), np.float32)
+    for light in reading.lights:
+        factor = stacked(path, planes, light.factor) if light.factor else np.float32(1)
+        total += stacked(path, planes, light.channels) * factor
+    return total

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from svgf_cl import FileError
 from svgf_cl.errors import SvgfError
-from svgf_cl.io.patterns import expanded, numbered, parse_range
+from svgf_cl.io.patterns import expanded, has_number, numbered, parse_range
 from svgf_cl.io.sequence import find_frames
 
 NAMES = ["a.0001.exr", "a.0002.exr", "a.10000.exr", "a.0001.png", "b.0001.exr", "a.exr", "xa.0001.exr", ".a.0003.exr"]
@@ -54,6 +54,14 @@ def test_a_pattern_of_two_numbers_is_refused(pattern: str, folder: Path) -> None
         expanded(folder / pattern)
 
 
+def test_a_minus_belongs_to_the_number_behind_a_dot_or_an_underscore_alone(tmp_path: Path) -> None:
+    for name in ("a1.exr", "a-2.exr", "b_1.exr", "b_-2.exr"):
+        (tmp_path / name).touch()
+    assert [path.name for path in expanded(tmp_path / "a#.exr")] == ["a1.exr"]
+    assert [path.name for path in expanded(tmp_path / "a-#.exr")] == ["a-2.exr"]
+    assert [path.name for path in expanded(tmp_path / "b_#.exr")] == ["b_-2.exr", "b_1.exr"]
+
+
 def test_signs_of_other_languages_in_a_name_are_taken_as_they_are(tmp_path: Path) -> None:
     for name in ("a+(1).1.exr", "aa1.1.exr"):
         (tmp_path / name).touch()
@@ -74,6 +82,18 @@ def test_signs_of_other_languages_in_a_name_are_taken_as_they_are(tmp_path: Path
 )
 def test_a_number_is_put_into_a_pattern(pattern: str, number: int, name: str) -> None:
     assert numbered(Path("out") / pattern, number) == Path("out") / name
+
+
+@pytest.mark.parametrize("pattern", ["b.####", "b.####.png", "b####exr"])
+def test_pictures_are_not_named_otherwise_than_exr(pattern: str) -> None:
+    with pytest.raises(FileError, match=r"expected a pattern that ends in \.exr, such as ####\.exr, or a folder"):
+        numbered(Path(pattern), 1)
+
+
+def test_a_folder_is_no_pattern(tmp_path: Path) -> None:
+    assert has_number(tmp_path / "shot#1")
+    (tmp_path / "shot#1").mkdir()
+    assert not has_number(tmp_path / "shot#1")
 
 
 @given(st.integers(-99999, 99999), st.integers(1, 6), st.booleans())

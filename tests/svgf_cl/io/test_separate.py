@@ -122,7 +122,7 @@ def test_a_file_on_another_window_than_its_frame_is_named(tmp_path: Path) -> Non
 
 def test_too_few_components_are_told(tmp_path: Path) -> None:
     written(tmp_path / "n", {at.number: {"Z": at.frame.depth} for at in moments()}, stem="n.")
-    with pytest.raises(FileError, match=r"normal: expected a pass of 3 components, found 1"):
+    with pytest.raises(FileError, match=r"expected 3 components of normal in its file, found 1"):
         open_sequence(without_depth(tmp_path / "shot"), separate={"normal": tmp_path / "n"})
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl import FileError, Frame
+from svgf_cl import FileError, Frame, open_sequence
 from svgf_cl.io.exr import read_image, write_image
 from svgf_cl.io.frames import frame_path, read_frame, write_frame
 from svgf_cl.io.sequence import find_frames
@@ -16,6 +16,19 @@ from svgf_cl.io.shot import Shot, shared_window
 from svgf_cl.io.window import Window
 from tests.exr_files import exr_bytes
 from tests.frames import wall
+from tests.renderers import (
+    ARNOLD_HEADER,
+    BLENDER_HEADER,
+    NUMBERS,
+    SHAPE,
+    arnold,
+    blender,
+    matrices,
+    moments,
+    own,
+    same_frames,
+    written,
+)
 
 
 def plain_frame(h: int = 3, w: int = 4, **fields: object) -> Frame:
@@ -116,3 +129,74 @@ def test_integers_beyond_what_floats_can_count_to_are_ids(tmp_path: Path) -> Non
         tmp_path / "a.exr", replace(image, parts=(replace(image.parts[0], planes={**image.planes, "id": ids}),))
     )
     np.testing.assert_array_equal(read_frame(tmp_path / "a.exr").id, ids, strict=True)
+
+
+# What `open_sequence` takes
+
+
+def test_a_shot_is_a_sequence(tmp_path: Path) -> None:
+    written(tmp_path, {at.number: own(at) for at in moments()})
+    frames = open_sequence(tmp_path)
+    assert (len(frames), frames.shape) == (3, SHAPE)
+    same_frames(frames, [at.frame for at in moments()])
+    same_frames(frames[1:], [at.frame for at in moments()[1:]])
+    same_frames([frames[-1]], [moments()[-1].frame])
+    with pytest.raises(IndexError):
+        frames[3]
+
+
+def test_frames_are_given_by_folder_pattern_or_one_by_one(tmp_path: Path) -> None:
+    written(tmp_path, {at.number: own(at) for at in moments()})
+    files = sorted(tmp_path.iterdir())
+    for given in (tmp_path, str(tmp_path), tmp_path / "shot_####.exr", f"{tmp_path}/shot_%04d.exr", files[::-1]):
+        assert list(open_sequence(given).paths) == files
+    with pytest.raises(FileError, match=r"none\.####\.exr: expected files of this pattern, found none"):
+        open_sequence(tmp_path / "none.####.exr")
+
+
+def test_a_gap_is_a_cut_where_it_is_allowed(tmp_path: Path) -> None:
+    written(tmp_path, {at.number: own(at) for at in moments((1, 2, 4))})
+    with pytest.raises(FileError, match=r"shot_0003\.exr: expected this frame between"):
+        open_sequence(tmp_path)
+    assert open_sequence(tmp_path, allow_gaps=True).cuts == {2}
+
+
+def test_a_camera_in_a_header_is_that_of_the_whole_image(tmp_path: Path) -> None:
+    """Whatever part of it the data window of a frame is."""
+    for at, x in zip(moments(), (0, 5, 3), strict=True):
+        planes = {name: np.ascontiguousarray(plane[:, x : x + 20]) for name, plane in arnold(at).items()}
+        header, display = ARNOLD_HEADER | matrices(at, "Arnold"), Window(0, 0, SHAPE[1], SHAPE[0])
+        (tmp_path / f"{at.number}.exr").write_bytes(exr_bytes(planes, header, (x, 0), display))
+    frames = open_sequence(tmp_path)
+    for index, x in ((1, 5), (2, 3)):
+        inside = np.s_[:, x : x + 20]
+        np.testing.assert_allclose(frames[index].motion[inside], moments()[index].frame.motion[inside], atol=1e-3)
+
+
+def test_a_display_window_elsewhere_moves_no_camera(tmp_path: Path) -> None:
+    for at in moments():
+        header, display = ARNOLD_HEADER | matrices(at, "Arnold"), Window(100, -50, SHAPE[1], SHAPE[0])
+        (tmp_path / f"{at.number}.exr").write_bytes(exr_bytes(arnold(at), header, (100, -50), display))
+    np.testing.assert_allclose(open_sequence(tmp_path)[1].motion, moments()[1].frame.motion, atol=1e-3)
+
+
+def test_cameras_that_are_given_come_before_those_of_files(tmp_path: Path) -> None:
+    planes = {at.number: arnold(at) for at in moments()}
+    written(tmp_path, planes, {at.number: ARNOLD_HEADER | matrices(at, "Arnold") for at in moments()})
+    still = dict.fromkeys(NUMBERS, moments()[0].camera)
+    np.testing.assert_allclose(open_sequence(tmp_path, cameras=still)[1].motion, 0.0, atol=1e-4)
+    assert np.abs(open_sequence(tmp_path)[1].motion).max() > 0.1
+
+
+def test_lights_lie_on_the_window_of_the_shot(tmp_path: Path) -> None:
+    display = Window(0, 0, SHAPE[1], SHAPE[0])
+    for at, x in zip(moments(), (0, 12, 6), strict=True):
+        planes = {name: np.ascontiguousarray(plane[:, x : x + 20]) for name, plane in blender(at).items()}
+        (tmp_path / f"{at.number}.exr").write_bytes(exr_bytes(planes, BLENDER_HEADER, (x, 0), display))
+    shot = open_sequence(tmp_path)
+    source = shot.read(1)
+    for light in source.lights:
+        assert light.radiance.shape == (*SHAPE, 3)
+        assert not light.radiance[:, :12].any()
+    total = sum(light.radiance * (1 if light.factor is None else light.factor) for light in source.lights)
+    np.testing.assert_allclose(total, source.frame.color, rtol=1e-5, atol=1e-6)

@@ -50,7 +50,7 @@ def test_a_file_may_have_a_part_for_each_pass(tmp_path: Path) -> None:
         (tmp_path / f"{at.number}.exr").write_bytes(multipart_bytes(parts, BLENDER_HEADER))
     frames = open_sequence(tmp_path)
     same_frames(frames, [truth(at) for at in moments()])
-    assert [light.kind.filtered for light in frames.reading.lights] == [True, True, False, False]
+    assert [light.filtered for light in frames.reading.lights] == [True, True, False, False]
 
 
 def test_one_of_several_view_layers_is_read(tmp_path: Path) -> None:

@@ -26,7 +26,7 @@ def test_frames_are_read_in_both_spellings(spelling: str, header: dict, tmp_path
     frames = open_sequence(written(tmp_path, {at.number: vray(at, spelling) for at in moments()}, header))
     assert frames.reading.reader.name == "vray"
     same_frames(frames, [expected(at) for at in moments()])
-    assert [light.kind.filtered for light in frames.reading.lights] == [True, True, False]
+    assert [light.filtered for light in frames.reading.lights] == [True, True, False]
 
 
 def lacking(planes: Planes, *names: str) -> Planes:

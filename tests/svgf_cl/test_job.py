@@ -1,0 +1,115 @@
+"""A shot's files become pictures, all at once or in stretches."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from svgf_cl import FileError
+from svgf_cl.filters import DEFAULT
+from svgf_cl.io.exr import read_channels, read_image
+from svgf_cl.io.sequence import find_frames
+from svgf_cl.io.shot import Shot, ShotFrame
+from svgf_cl.job import Job, Style, in_layer, run, target_paths
+from tests.renderers import BLENDER_HEADER, NUMBERS, blender, moments, written
+
+
+@pytest.fixture
+def sources(tmp_path: Path) -> list[Path]:
+    planes = {at.number: blender(at) for at in moments()}
+    return find_frames([written(tmp_path / "shot", planes, BLENDER_HEADER)])
+
+
+def job_of(sources: list[Path], folder: Path, **more: object) -> Job:
+    return Job(tuple(sources), tuple(target_paths(sources, folder)), DEFAULT(), **more)  # type: ignore[arg-type]
+
+
+def test_each_frame_is_written_when_it_is_done(sources: list[Path], tmp_path: Path) -> None:
+    done = run(job_of(sources, tmp_path / "out"))
+    assert not (tmp_path / "out").exists()
+    for number, each in zip(NUMBERS, done, strict=True):
+        assert each.target == tmp_path / "out" / f"shot_{number:04d}.exr"
+        assert each.target.exists()
+        assert each.source.path == sources[number - 1]
+        assert not each.kept
+        assert all(time >= 0 for time in each.times.values())
+    assert all(each.kept for each in run(job_of(sources, tmp_path / "out")))
+
+
+def test_frames_that_warm_up_are_looked_at_and_not_written(sources: list[Path], tmp_path: Path) -> None:
+    seen: list[int] = []
+
+    def look(shot: Shot, index: int, source: ShotFrame) -> None:
+        assert source.path == shot.paths[index]
+        seen.append(index)
+
+    done = list(run(job_of(sources, tmp_path / "out"), warm_up=2, look=look))
+    assert seen == [0, 1, 2]
+    assert [each.target.name for each in done] == ["shot_0003.exr"]
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["shot_0003.exr"]
+
+
+def test_a_part_of_a_job_does_its_frames_alone(sources: list[Path], tmp_path: Path) -> None:
+    whole = job_of(sources, tmp_path / "out")
+    part = whole.part(range(1, 3))
+    assert part.paths == whole.paths[1:]
+    assert part.targets == whole.targets[1:]
+    assert [each.target for each in run(part)] == list(whole.targets[1:])
+
+
+def test_a_picture_alone_is_written(sources: list[Path], tmp_path: Path) -> None:
+    (first, *_) = run(job_of(sources, tmp_path / "out", style=Style(plain=True, png=True)))
+    assert read_channels(first.target).keys() == {"R", "G", "B"}
+    assert first.target.with_suffix(".png").exists()
+
+
+def test_light_passes_may_be_left_alone(sources: list[Path], tmp_path: Path) -> None:
+    (first, *_) = run(job_of(sources, tmp_path / "out", lights=False))
+    before, after = read_channels(sources[0]), read_channels(first.target)
+    different = {name for name, plane in before.items() if plane.tobytes() != after[name].tobytes()}
+    assert different == {f"ViewLayer.Combined.{c}" for c in "RGB"}
+
+
+def test_the_standard_error_lies_beside_the_picture(sources: list[Path], tmp_path: Path) -> None:
+    job = Job(tuple(sources), tuple(target_paths(sources, tmp_path / "out")), DEFAULT(standard_error=True))
+    (first, *_) = run(job)
+    error = read_channels(first.target)["standard_error"]
+    assert np.isfinite(error).all()
+    assert error.any()
+
+
+@pytest.mark.parametrize(
+    ("channel", "view_layer", "name"),
+    [
+        ("R", "", "Denoised.R"),
+        ("Main Layer.Combined.R", "Main Layer", "Denoised.Combined.R"),
+        ("Ebene.001.Combined.R", "Ebene.001", "Denoised.Combined.R"),
+        ("diffuse_direct.R", "", "Denoised.diffuse_direct.R"),
+        ("standard_error", "Main Layer", "Denoised.standard_error"),
+    ],
+)
+def test_a_layer_takes_the_place_of_the_view_layer(channel: str, view_layer: str, name: str) -> None:
+    assert in_layer(channel, view_layer, "Denoised") == name
+
+
+def test_pictures_are_called_as_their_frames_or_by_a_pattern(tmp_path: Path) -> None:
+    files = [tmp_path / name for name in ("a.0007.exr", "a.0008.EXR")]
+    assert [path.name for path in target_paths(files, tmp_path / "out")] == ["a.0007.exr", "a.0008.exr"]
+    assert [path.name for path in target_paths(files, tmp_path / "##.exr")] == ["07.exr", "08.exr"]
+    assert target_paths([tmp_path / "still.exr"], tmp_path / "out.####.exr") == [tmp_path / "out.0000.exr"]
+
+
+def test_no_picture_replaces_a_frame_by_whatever_way_it_is_named(sources: list[Path], tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to(sources[0].parent)
+    for output in (sources[0].parent, tmp_path / "link", tmp_path / "link" / "shot_####.exr"):
+        with pytest.raises(FileError, match="expected an output folder other than the input's"):
+            target_paths(sources, output)
+
+
+def test_a_run_leaves_its_input_as_it_was(sources: list[Path], tmp_path: Path) -> None:
+    before = [path.read_bytes() for path in sources]
+    done = list(run(job_of(sources, tmp_path / "out")))
+    assert [path.read_bytes() for path in sources] == before
+    assert read_image(done[0].target).windows == read_image(sources[0]).windows
