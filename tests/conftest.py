@@ -8,9 +8,11 @@ from pathlib import Path
 
 import pyopencl as cl
 import pytest
+from distributed import LocalCluster
 
 from svgf_cl.device import devices, tuning
 from svgf_cl.io import cache
+from tests.cluster import local_cluster
 from tests.command_line import run
 
 
@@ -50,6 +52,13 @@ def queue() -> cl.CommandQueue:
 def context(queue: cl.CommandQueue) -> cl.Context:
     """The context of `queue`."""
     return queue.context
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[LocalCluster]:
+    """A scheduler with `WORKERS` workers."""
+    with local_cluster() as cluster:
+        yield cluster
 
 
 @pytest.fixture

@@ -2,24 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from svgf_cl.chunks import CHUNK, WARM_UP, Chunk, FrameDone, cut, denoise_chunk, denoise_on_cluster
 from svgf_cl.cli import reading
 from svgf_cl.cli.console import kept_of, show_times, tracked
 from svgf_cl.cli.options import AllowGaps, Exposure, FilterName, Frames, SettingTexts, parse_settings
-from svgf_cl.cli.remarks import Remarks
+from svgf_cl.cli.remarks import Remarks, look_at_surfaces
 from svgf_cl.errors import SvgfError
 from svgf_cl.filters import DEFAULT
 from svgf_cl.io.atomic import output_folder
 from svgf_cl.io.patterns import has_number, parse_range
 from svgf_cl.io.separate import SeparateFiles
 from svgf_cl.io.sequence import check_leftovers, find_frames, number_of
-from svgf_cl.job import Job, Style, png_of, run, target_paths
+from svgf_cl.io.shot import Shot
+from svgf_cl.job import Job, Style, png_of, target_paths
 
 Separate = Annotated[Path | None, typer.Option(metavar="FILES", help="Files of this field alone, by number.")]
+
+CHUNK_HELP = f"Cut the shot into chunks of N frames, each with its own warm-up. With --scheduler {CHUNK}, else one."
+SCHEDULER_HELP = "Denoise chunks on the workers of the Dask scheduler there, for example tcp://10.0.0.7:8786."
 
 
 def denoise(
@@ -35,8 +41,10 @@ def denoise(
     span: Annotated[str | None, typer.Option("--frames", metavar="FIRST-LAST", help="Only these frames.")] = None,
     warm_up: Annotated[
         int,
-        typer.Option(min=0, metavar="N", help="Filter N more frames before the first of --frames, to have a past."),
-    ] = 0,
+        typer.Option(min=0, metavar="N", help="Filter N more frames before the first of --frames or of a chunk."),
+    ] = WARM_UP,
+    chunk: Annotated[int | None, typer.Option(min=1, metavar="N", help=CHUNK_HELP)] = None,
+    scheduler: Annotated[str | None, typer.Option(metavar="ADDRESS", help=SCHEDULER_HELP)] = None,
     lights: Annotated[
         bool,
         typer.Option("--passes/--no-passes", help="Denoise light passes, too, so that they add up to the picture."),
@@ -76,7 +84,8 @@ def denoise(
     Examples:
       svgf-cl denoise 'shot/####.exr' -o 'out/####.exr'
       svgf-cl denoise shot -o out --layer Denoised              # beside the noisy passes
-      svgf-cl denoise shot -o out --frames 101-150 --warm-up 16 # a stretch that fits to those of other machines
+      svgf-cl denoise shot -o out --frames 101-150              # a stretch that fits to those of other machines
+      svgf-cl denoise shot -o out --scheduler tcp://10.0.0.7:8786
       svgf-cl denoise 'beauty.####.exr' --albedo 'albedo.####.exr' --normal 'N.####.exr' --depth 'Z.####.exr' \\
                       --motion 'mv.####.exr' -o out
       svgf-cl denoise out/box -o out/box-sure --set standard_error=on   # and the channel standard_error
@@ -87,13 +96,12 @@ def denoise(
     fields = {"albedo": albedo, "normal": normal, "depth": depth, "motion": motion, "id": id_}
     sources = find_frames(frames, allow_gaps=allow_gaps)
     selected = chosen(sources, span)
-    first = max(0, selected.start - warm_up)
     folder = output.parent if has_number(output) else output
     output_folder(folder)
     targets = target_paths(sources, output)
     job = Job(
-        tuple(sources[first : selected.stop]),
-        tuple(targets[first : selected.stop]),
+        tuple(sources),
+        tuple(targets),
         parse_settings(filter_, set_),
         reading.read_as(format_, maps, view_layer, cameras, still_camera, motion_scale, motion_flip),
         SeparateFiles.of({name: path for name, path in fields.items() if path}),
@@ -101,13 +109,25 @@ def denoise(
         lights,
     )
     check_leftovers(folder, [*targets, *(png_of(target) for target in targets if png)])
+    chunks = cut(job, selected, chunk or (CHUNK if scheduler else len(selected)), warm_up)
     total, kept, times = len(selected), 0, []
-    remarks = Remarks(len(job.paths), check=check)
-    for done in tracked(run(job, selected.start - first, remarks.look), total, "denoising"):
+    for done in tracked(frames_done(job, chunks, scheduler, check), total, "denoising"):
         kept += done.kept
         times.append(done.times)
     show_times(times)
     print(f"{total} frames in {folder}{kept_of(kept)}")
+
+
+def frames_done(job: Job, chunks: list[Chunk], scheduler: str | None, check: bool) -> Iterator[FrameDone]:
+    """Denoise chunks here or on a cluster; remarks on the first frames are made here in either case."""
+    beginning = job.part(range(chunks[0].first, chunks[-1].written.stop))
+    remarks = Remarks(len(beginning.paths), check=check)
+    if scheduler:
+        remarks.look_ahead(Shot(beginning.paths, beginning.how, beginning.separate))
+        yield from denoise_on_cluster(scheduler, job, chunks, look_at_surfaces)
+    else:
+        for chunk in chunks:
+            yield from denoise_chunk(job, chunk, remarks.look)
 
 
 def chosen(sources: list[Path], span: str | None) -> range:
