@@ -10,6 +10,7 @@ import pyopencl as cl
 import pytest
 from distributed import LocalCluster
 
+from svgf_cl.cli import log
 from svgf_cl.device import devices, tuning
 from svgf_cl.io import cache
 from tests.cluster import local_cluster
@@ -31,6 +32,14 @@ def no_references(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     folder = tmp_path_factory.mktemp("references")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(cache, "cache_folder", lambda: folder)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def no_progress() -> Iterator[None]:
+    """No lines of progress, however slow this machine is: what else is on stderr is counted."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(log, "SECONDS", float("inf"))
         yield
 
 
