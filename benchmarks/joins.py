@@ -39,7 +39,7 @@ def joins(
         list[str], typer.Argument(metavar="[SCENE]...", help="Built-in scenes, folders with a scene.json, scene files.")
     ] = list(SCENES),  # noqa: B006  # never changed; typer wants the default spelled here
     size: Annotated[str, typer.Option(metavar="WxH", help="Size of the frames.")] = "320x180",
-    frames: Annotated[int, typer.Option(metavar="N", min=max(WARM_UPS) + 2, help="Frames of the whole shot.")] = 48,
+    frames: Annotated[int, typer.Option(metavar="N", min=max(WARM_UPS) + 2, help="Frames of the whole shot.")] = 96,
     spp: Annotated[int, typer.Option(metavar="N", min=2, help="Samples per pixel of the truth.")] = 256,
     jitter: Annotated[bool, typer.Option(help="Send rays through another point of the pixel in every frame.")] = True,
     markdown_: Annotated[bool, typer.Option("--markdown", help="Print the table as markdown.")] = False,
