@@ -119,7 +119,7 @@ def test_the_command_on_a_cluster_writes_what_it_writes_here(
 
 
 def test_a_join_cannot_be_seen() -> None:
-    """Behind the default warm-up a picture is nearly that of the uncut shot: off by a tenth of a frame's change."""
+    """Behind the default warm-up a picture is off by less than a tenth of what a frame changes."""
     shape, join = (72, 128), WARM_UP + 8
     frames = list(room_frames(shape, join + 1))
     whole = shown(frames)
