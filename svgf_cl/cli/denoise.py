@@ -119,15 +119,18 @@ def denoise(
 
 
 def frames_done(job: Job, chunks: list[Chunk], scheduler: str | None, check: bool) -> Iterator[FrameDone]:
-    """Denoise chunks here or on a cluster; remarks on the first frames are made here in either case."""
-    beginning = job.part(range(chunks[0].first, chunks[-1].written.stop))
-    remarks = Remarks(len(beginning.paths), check=check)
+    """Denoise chunks here or on a cluster, with remarks on the first frames, which are made here."""
+    everything = job.part(range(chunks[0].first, chunks[-1].written.stop))
+    remarks = Remarks(len(everything.paths), check=check)
+    if len(chunks) == 1 and not scheduler:
+        yield from denoise_chunk(job, chunks[0], remarks.look)
+        return
+    remarks.look_ahead(Shot(everything.paths, everything.how, everything.separate))
     if scheduler:
-        remarks.look_ahead(Shot(beginning.paths, beginning.how, beginning.separate))
         yield from denoise_on_cluster(scheduler, job, chunks, look_at_surfaces)
     else:
         for chunk in chunks:
-            yield from denoise_chunk(job, chunk, remarks.look)
+            yield from denoise_chunk(job, chunk, look_at_surfaces)
 
 
 def chosen(sources: list[Path], span: str | None) -> range:

@@ -80,8 +80,8 @@ class Remarks:
             self._inspection = Inspection()  # what it held is free
 
     def look_ahead(self, shot: Shot) -> None:
-        """Look at the first frames of a shot that others will denoise."""
-        for index in range(min(FIRST, len(shot))):
+        """Look at the first frames of a shot that is denoised in chunks."""
+        for index in range(max(1, self._left)):
             self.look(shot, index, shot.read(index))
 
     def _warn(self) -> None:

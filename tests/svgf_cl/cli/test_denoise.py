@@ -12,6 +12,7 @@ import pytest
 from svgf_cl.io.exr import read_channels, read_image, write_channels
 from svgf_cl.io.frames import read_frame, write_frame
 from svgf_cl.io.pictures import read_picture
+from svgf_cl.io.synthetic import room_frames
 from svgf_cl.io.window import Window
 from tests.command_line import NAMES, contents, run
 from tests.exr_files import exr_bytes
@@ -198,3 +199,17 @@ def test_a_window_that_moves_over_a_still_picture_changes_nothing(tmp_path: Path
     assert windows.display == display
     assert run("compare", tmp_path / "moving out", tmp_path / "whole out") == 0
     assert run("check", tmp_path / "moving") in (0, 1)
+
+
+def test_short_chunks_raise_no_false_alarm(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Warm-ups go over the same frames again, which no motion leads to."""
+    (tmp_path / "shot").mkdir()
+    for number, frame in enumerate(room_frames((108, 192), 8)):
+        write_frame(tmp_path / "shot" / f"frame.{number:04d}.exr", frame)
+    said = []
+    for folder, chunk in (("whole", ()), ("chunks", ("--chunk", "2", "--warm-up", "2"))):
+        assert run("denoise", tmp_path / "shot", "-o", tmp_path / folder, *chunk) == 0
+        said.append(capsys.readouterr())
+    assert said[0].err == said[1].err
+    assert said[0].out.splitlines()[0] == said[1].out.splitlines()[0]
+    assert len(contents(tmp_path / "chunks")) == 8
