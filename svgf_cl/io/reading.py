@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -135,7 +135,7 @@ class Reading:
             values = self.reader.complete(values, camera)
         values |= derived(values, camera, previous, still=self.how.still_camera)
         if "emission" not in values and (shining := [light for light in self.lights if not light.filtered]):
-            values["emission"] = sum_of(np.stack([planes[name] for name in light.channels], -1) for light in shining)
+            values["emission"] = sum_of(stacked(path, planes, light.channels) for light in shining)
         missing = [name for name in REQUIRED if name not in values]
         if not values.keys() & {"color", "direct", "indirect"}:
             missing = ["color", *missing]
@@ -247,6 +247,14 @@ class Reading:
 def single_precision(plane: Array) -> Array:
     """A plane of floats as float32, one of integers as it is."""
     return plane if plane.dtype.kind in "ui" else np.asarray(plane, np.float32)
+
+
+def stacked(path: Path, planes: Mapping[str, Array], channels: Sequence[str]) -> npt.NDArray[np.float32]:
+    """The picture (H, W, 3) of three channels; `FileError` where the file lacks one."""
+    lost = [channel for channel in channels if channel not in planes]
+    if lost:
+        raise FileError(f"{path}: expected the light pass {' '.join(channels)} as in the first frame, found none")
+    return np.stack([np.asarray(planes[channel], np.float32) for channel in channels], axis=-1)
 
 
 def sum_of(pictures: Iterable[Array]) -> npt.NDArray[np.float32]:

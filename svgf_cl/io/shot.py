@@ -19,7 +19,7 @@ from svgf_cl.io.cameras import camera_of_header, cameras_beside, read_cameras
 from svgf_cl.io.exr import MAX_DISPLAY, read_image, read_windows
 from svgf_cl.io.exr_header import read_attributes
 from svgf_cl.io.image import Image, Plane, Windows
-from svgf_cl.io.reading import LightPass, ReadAs, Reading
+from svgf_cl.io.reading import LightPass, ReadAs, Reading, stacked
 from svgf_cl.io.separate import SeparateFiles
 from svgf_cl.io.sequence import after_gaps, find_frames, number_of
 from svgf_cl.io.window import Window, placed, union
@@ -261,14 +261,6 @@ def open_sequence(
     files = find_frames([Path(each) for each in given], allow_gaps=allow_gaps)
     others = SeparateFiles.of({field: Path(pattern) for field, pattern in (separate or {}).items()})
     return Shot(files, ReadAs(**how), others)
-
-
-def stacked(path: Path, planes: Mapping[str, Plane], channels: Sequence[str]) -> Picture:
-    """The picture (H, W, 3) of three channels; `FileError` where the file lacks one."""
-    lost = [channel for channel in channels if channel not in planes]
-    if lost:
-        raise FileError(f"{path}: expected the light pass {' '.join(channels)} as in the first frame, found it not")
-    return np.stack([np.asarray(planes[channel], np.float32) for channel in channels], axis=-1)
 
 
 def shared_window(paths: Sequence[Path]) -> Window:
