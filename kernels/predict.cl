@@ -99,26 +99,27 @@ INLINE Sums surroundings(const int4 size, Expected e, Nine nine, float normal_th
     return sums;
 }
 
-KERNEL predict(const int4 size, const float depth_threshold, const float normal_threshold, const float albedo_threshold,
-               const int frame_number, __global const float *restrict motion, __global const float *restrict guide,
+KERNEL predict(const int4 size, const int4 past_size, const float depth_threshold, const float normal_threshold,
+               const float albedo_threshold, const int frame_number, const int past_x, const int past_y,
+               __global const float *restrict motion, __global const float *restrict guide,
                __global const light_t *restrict illumination, __global const float *restrict previous_guide,
                __global const light_t *restrict previous_state, __global const light_t *restrict filtered,
                __global float *restrict prediction, __global float *restrict innovation) {
     const int x = first_column(), y = row();
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
-    const Expected e = expect(size, x, y, motion, guide, depth_threshold, albedo_threshold);
+    const Expected e = expect(size, x, y, past_x, past_y, motion, guide, depth_threshold, albedo_threshold);
     const intv hit = load(SHARED_PLANE(size, guide, GUIDE_DEPTH) + here) > 0.0f;
     const Previous previous = {previous_guide, previous_state, filtered};
 
     Sums sums = no_sums();
     if (frame_number > 0) {  // after a cut the previous frame is of another shot
-        const Box footprints = box_of(size, x, y, e.left, e.top, hit, 2);
-        sums = footprint(size, e, footprints, normal_threshold, previous);
+        const Box footprints = box_of(past_size, e.x, e.y, e.left, e.top, hit, 2);
+        sums = footprint(past_size, e, footprints, normal_threshold, previous);
         const intv lost = hit & (sums.weight <= ENOUGH);
         if (any_lane(lost)) {  // thin geometry
-            const Nine around = nine_around(size, x, y, e, lost);
-            const Sums nine = surroundings(size, e, around, normal_threshold, previous);
+            const Nine around = nine_around(past_size, e, lost);
+            const Sums nine = surroundings(past_size, e, around, normal_threshold, previous);
             sums.weight = where(lost, nine.weight, sums.weight);
             UNROLLED_FOR(s, SIGNALS) sums.state[s] = select_state(lost, nine.state[s], sums.state[s]);
         }

@@ -107,10 +107,12 @@ INLINE YCoCg weighted(const int4 size, const floatv *across, const floatv *down,
     return sum;
 }
 
-// History at p + (mx, my) where that is `seen`.
-INLINE YCoCg read_history(const int4 size, int x, int y, intv seen, floatv mx, floatv my,
+// History at p + (mx, my) + (past_x, past_y) where that is `seen`.
+INLINE YCoCg read_history(const int4 size, int x, int y, intv seen, floatv mx, floatv my, int past_x, int past_y,
                           __global const float *history) {
-    const intv whole_x = to_int(floor(mx)), whole_y = to_int(floor(my)), shift = whole_x + whole_y * size.z;
+    const intv whole_x = select((intv)(0), to_int(floor(mx)) + past_x, seen);
+    const intv whole_y = select((intv)(0), to_int(floor(my)) + past_y, seen);
+    const intv shift = whole_x + whole_y * size.z;
     const floatv fx = mx - floor(mx), fy = my - floor(my);
     const int here = at(size, x, y);
     YCoCg h;
@@ -175,21 +177,24 @@ INLINE YCoCg filtered(const int4 size, int x, int y, float pixel_filter, __globa
     return ycocg(c[0], c[1], c[2]);
 }
 
-KERNEL taa(const int4 size, const float alpha_taa, const float pixel_filter, __global const float *restrict motion,
-           __global const float *restrict guide, __global const light_t *restrict moments,
-           __global const float *restrict picture, __global const float *restrict history,
-           __global float *restrict next_history, __global float *restrict out) {
+KERNEL taa(const int4 size, const int4 past_size, const float alpha_taa, const float pixel_filter, const int past_x,
+           const int past_y, __global const float *restrict motion, __global const float *restrict guide,
+           __global const light_t *restrict moments, __global const float *restrict picture,
+           __global const float *restrict history, __global float *restrict next_history,
+           __global float *restrict out) {
     const int x = first_column(), y = row();
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
     const intv front = foremost(size, SHARED_PLANE(size, guide, GUIDE_DEPTH) + here);
     const Color m = motion_of(size, x, y, front, motion);
-    const floatv px = to_float(x + LANES) + m.channel[0], py = to_float((intv)(y)) + m.channel[1];
-    const float right = (float)size.x - HALF_PIXEL, bottom = (float)size.y - HALF_PIXEL;
-    intv seen = (px >= -HALF_PIXEL) & (px < right) & (py >= -HALF_PIXEL) & (py < bottom);  // false for NaN
+    // Motion is held against the distances to the image's edges, which are exact; a position p' would be rounded.
+    const floatv left = -HALF_PIXEL - to_float(x + past_x + LANES), right = left + (float)past_size.x;
+    const float top = -HALF_PIXEL - (float)(y + past_y), bottom = top + (float)past_size.y;
+    intv seen = (m.channel[0] >= left) & (m.channel[0] < right);  // false for NaN
+    seen &= (m.channel[1] >= top) & (m.channel[1] < bottom);
     seen &= fabs(m.channel[2]) <= MAX_DEPTH;
     const floatv mx = where(seen, m.channel[0], (floatv)(0.0f)), my = where(seen, m.channel[1], (floatv)(0.0f));
-    const YCoCg h = read_history(size, x, y, seen, mx, my, history);
+    const YCoCg h = read_history(past_size, x, y, seen, mx, my, past_x, past_y, history);
 
     YCoCg low, high;
     extent(size, x, y, picture, &low, &high);

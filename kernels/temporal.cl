@@ -100,28 +100,29 @@ INLINE History surroundings(const int4 size, Expected e, Nine nine, float normal
 }
 
 // `accumulated` may lie where `illumination` does: a pixel of either is touched by its own work-item alone.
-KERNEL temporal(const int4 size, const float alpha_color, const float alpha_moments, const float depth_threshold,
-                const float normal_threshold, const float albedo_threshold, const int frame_number,
-                __global const float *restrict motion, __global const float *restrict guide,
-                __global const light_t *illumination, __global const float *restrict previous_guide,
-                __global const light_t *restrict history, __global const light_t *restrict previous_moments,
-                __global light_t *accumulated, __global light_t *restrict moments) {
+KERNEL temporal(const int4 size, const int4 past_size, const float alpha_color, const float alpha_moments,
+                const float depth_threshold, const float normal_threshold, const float albedo_threshold,
+                const int frame_number, const int past_x, const int past_y, __global const float *restrict motion,
+                __global const float *restrict guide, __global const light_t *illumination,
+                __global const float *restrict previous_guide, __global const light_t *restrict history,
+                __global const light_t *restrict previous_moments, __global light_t *accumulated,
+                __global light_t *restrict moments) {
     const int x = first_column(), y = row();
     if (x >= size.x || y >= size.y) return;
     const int here = at(size, x, y);
-    const Expected e = expect(size, x, y, motion, guide, depth_threshold, albedo_threshold);
+    const Expected e = expect(size, x, y, past_x, past_y, motion, guide, depth_threshold, albedo_threshold);
     const intv hit = load(SHARED_PLANE(size, guide, GUIDE_DEPTH) + here) > 0.0f;
     const Previous previous = {previous_guide, history, previous_moments};
 
     History h = no_history();
     if (frame_number > 0) {  // after a cut the previous frame is of another shot
-        const Box footprints = box_of(size, x, y, e.left, e.top, hit, 2);
-        h = footprint(size, e, footprints, normal_threshold, previous);
+        const Box footprints = box_of(past_size, e.x, e.y, e.left, e.top, hit, 2);
+        h = footprint(past_size, e, footprints, normal_threshold, previous);
     }
     const intv lost = hit & (h.weight <= ENOUGH);
     if (frame_number > 0 && any_lane(lost)) {  // thin geometry
-        const Nine around = nine_around(size, x, y, e, lost);
-        h = select_history(lost, surroundings(size, e, around, normal_threshold, previous), h);
+        const Nine around = nine_around(past_size, e, lost);
+        h = select_history(lost, surroundings(past_size, e, around, normal_threshold, previous), h);
     }
 
     const intv known = hit & (h.weight > ENOUGH);

@@ -35,7 +35,7 @@ WARNINGS = (
 )
 
 ROOT = Path(__file__).resolve().parent.parent
-FORMATTED = ("kernels/*.cl", "kernels/*.clh", "svgf_cl/bench/*.cl")
+FORMATTED = ("kernels/*.cl", "kernels/*.clh", "svgf_cl/bench/*.cl", "examples/*.cl")
 
 
 Job = tuple[str, tuple[str, ...]]  # a source file and the compiler's options
@@ -49,8 +49,10 @@ def inputs() -> Iterator[Inputs]:
 
 
 def jobs() -> list[Job]:
-    """Every source of every filter with the macros of all that frames may supply, at one width each by turns."""
-    found: dict[Job, None] = {}
+    """Every source that no filter chooses; each of a filter with the macros of all that frames may supply, at one width
+    each by turns.
+    """
+    found: dict[Job, None] = {(source, ()): None for source in programs.WITHOUT_HEADERS}
     either = (False, True)
     filters = [
         variant(kind, {"taa": taa, **chosen}) for kind in FILTERS.values() for taa in either for chosen in SETTINGS

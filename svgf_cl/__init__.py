@@ -9,6 +9,9 @@ from svgf_cl.filters import Accumulation, Eaw, Kalman, Lbf, Sbf, Settings
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Frame
 from svgf_cl.io.shot import open_sequence
+from svgf_cl.look_ahead import look_ahead
+from svgf_cl.next_motion import motion_to_next
+from svgf_cl.tiled import TiledDenoiser, denoiser_for
 
 __all__ = [
     "Accumulation",
@@ -27,10 +30,14 @@ __all__ = [
     "Settings",
     "SettingsError",
     "SvgfError",
+    "TiledDenoiser",
     "Tuning",
     "check_frame",
     "check_sequence",
+    "denoiser_for",
+    "look_ahead",
     "motion_from_cameras",
+    "motion_to_next",
     "open_sequence",
 ]
 __version__ = "0.1.0"

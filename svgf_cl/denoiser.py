@@ -28,13 +28,14 @@ from svgf_cl.device.events import pending
 from svgf_cl.device.opencl_errors import allocate, opencl_errors
 from svgf_cl.device.process import check_process, is_forked
 from svgf_cl.device.tuning import Tuning
-from svgf_cl.device.user_arrays import UserArrays, check_out
+from svgf_cl.device.user_arrays import Exchange, UserArrays, check_out
 from svgf_cl.errors import ArgumentError, SvgfError, shown
 from svgf_cl.filters import DEFAULT
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.pipeline import OUT, Pipeline
 from svgf_cl.filters.signals import Inputs
-from svgf_cl.frame import Frame, Shape, UserArray, extent
+from svgf_cl.frame import ALPHA, Frame, Shape, extent
+from svgf_cl.interchange import UserArray
 from svgf_cl.plan import Plan, Workplace
 
 # What to do after an error of the device.
@@ -132,15 +133,15 @@ class Denoiser:
         frame : Frame
             Every field of this denoiser's shape. The set of fields must stay the same until `reset`.
         out : (H, W, 3) float32 C-contiguous ndarray or Array, optional
-            Where to put the result.
+            Where to put the result; (H, W, 4) where `color` has alpha. An Array may have strides and an offset.
         wait_for : sequence of pyopencl.Event
             What must be complete before the frame's Arrays are read, beside what the Arrays themselves know of.
 
         Returns
         -------
-        (H, W, 3) float32
-            Linear HDR radiance: `out` if given; else an Array, perhaps still being computed on `queue`, if every
-            field is an Array; else an ndarray.
+        (H, W, 3) float32, or (H, W, 4) where `color` has alpha
+            Linear HDR radiance, and the alpha of `color` as it was: `out` if given; else an Array, perhaps still being
+            computed on `queue`, if every field is an Array; else an ndarray.
 
         Raises
         ------
@@ -158,16 +159,17 @@ class Denoiser:
         with self._in_turn() as arrays:
             frame.check(self._shape)
             if out is not None:
-                check_out(out, (*self._shape, 3))
+                check_out(out, frame.picture_shape)
             with self._opencl_errors("denoise", NOT_BEGUN):
                 inputs = Inputs.of(frame)
                 plan = self._ready(inputs, "denoise(frame)")
-                fields = {name: getattr(frame, name) for name in plan.pipeline.fields}
+                names = (*plan.pipeline.fields, *([ALPHA] if frame.has_alpha else []))
+                fields = {name: frame.layer(name) for name in names}
                 result = self._result(frame) if out is None else out
                 events = pending(wait_for, {**fields, OUT: result}, self._workplace.queue)
-                buffers = arrays.buffers(fields, result)
+                exchange = arrays.exchange(fields, result)
             self._plan, self._inputs = plan, inputs
-            self._run(plan, arrays, buffers, result, events)
+            self._run(plan, arrays, exchange, result, events)
         return result
 
     def warm_up(self, inputs: Inputs) -> None:
@@ -245,11 +247,11 @@ class Denoiser:
 
     @property
     def events(self) -> tuple[tuple[str, cl.Event], ...]:
-        """Label and OpenCL event of every pass of the last frame, in order."""
+        """Label and OpenCL event of every pass of the last frame, and of copies of Arrays with strides, in order."""
         return self._events
 
     def profile(self) -> dict[str, float]:
-        """Milliseconds on the device of each pass of the last frame, in order, from OpenCL events."""
+        """Milliseconds on the device of each of `events`, in order."""
         queue = self._workplace.queue
         with self._in_turn(), self._opencl_errors("profile", UNCHANGED):
             if not queue.properties & cl.command_queue_properties.PROFILING_ENABLE:
@@ -347,7 +349,7 @@ class Denoiser:
         self,
         plan: Plan,
         arrays: UserArrays,
-        buffers: dict[str, cl.Buffer],
+        exchange: Exchange,
         result: UserArray,
         events: list[cl.Event],
     ) -> None:
@@ -356,10 +358,12 @@ class Denoiser:
         self._cut()
         queue = self._workplace.queue
         with self._opencl_errors("denoise", BROKEN_OFF):
-            with arrays.in_use(buffers, result):
+            with arrays.in_use(exchange, result):
                 if events:
                     cl.enqueue_barrier(queue, wait_for=events)
-                done = self._passes(plan, buffers, first)
+                done = arrays.copy(exchange.before)
+                done += self._passes(plan, exchange.buffers, first)
+                done += arrays.copy(exchange.after)
             if isinstance(result, cl_array.Array):
                 result.add_event(done[-1][1])
                 queue.flush()  # whoever waits for that event on another queue must not wait for ever
@@ -385,7 +389,7 @@ class Denoiser:
 
     def _result(self, frame: Frame) -> Any:
         """A new array for the result, of the same kind as the frame's."""
-        shape = (*self._shape, 3)
+        shape = frame.picture_shape
         if all(isinstance(value, cl_array.Array) for value in frame.present().values()):
             nbytes = 4 * math.prod(shape)
             return cl_array.Array(self._queue, shape, np.float32, data=allocate(self._workplace.queue, nbytes, nbytes))

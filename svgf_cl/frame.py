@@ -6,15 +6,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import pyopencl.array as cl_array
 
 from svgf_cl.errors import ArgumentError, FrameError
+from svgf_cl.interchange import UserArray, as_array
 
 # Luminance of linear Rec. 709 red, green and blue.
 LUMINANCE: tuple[float, float, float] = (0.2126, 0.7152, 0.0722)
 
 Shape = tuple[int, int]
-UserArray = np.ndarray | cl_array.Array
 
 # Number of channels each field may have; 0 stands for a plain (H, W) array.
 CHANNELS: dict[str, tuple[int, ...]] = {
@@ -32,6 +31,8 @@ CHANNELS: dict[str, tuple[int, ...]] = {
     "roughness": (0,),
     "hit_distance": (2,),
 }
+# The fourth channel that `color` may have beside these: it goes to the result as it is.
+ALPHA = "color.alpha"
 REQUIRED = ("normal", "depth", "motion")
 # What the denoiser checks and leaves alone: renderers write it, and filters to come will want it.
 CARRIED = ("diffuse", "specular", "roughness", "hit_distance")
@@ -41,12 +42,14 @@ CARRIED = ("diffuse", "specular", "roughness", "hit_distance")
 class Frame:
     """One noisy image with its G-buffer.
 
-    Every field is a `numpy.ndarray` or a `pyopencl.array.Array`, row 0 on top, x to the right, y down.
+    Every field is a `numpy.ndarray` or a `pyopencl.array.Array`, row 0 on top, x to the right, y down. `Frame.of`
+    takes arrays of other libraries too.
 
     Parameters
     ----------
-    color : (H, W, 3) float32, optional
-        Linear HDR radiance, scene-referred. May be left out where `direct` and `indirect` are both given.
+    color : (H, W, 3) or (H, W, 4) float32, optional
+        Linear HDR radiance, scene-referred. May be left out where `direct` and `indirect` are both given. A fourth
+        channel is alpha: radiance is associated with it (premultiplied), and the result has it too, unchanged.
     normal : (H, W, 3) float32
         World-space unit shading normal; 0 where nothing was hit.
     depth : (H, W) float32
@@ -87,6 +90,33 @@ class Frame:
     roughness: Any = None
     hit_distance: Any = None
 
+    @classmethod
+    def of(cls, **fields: Any) -> Frame:
+        """A frame of arrays of any library.
+
+        Nothing is copied, but numbers in lists.
+
+        Parameters
+        ----------
+        **fields
+            Fields by name. Each is an object with ``__dlpack__`` in memory that the CPU reads (PyTorch, JAX), or with
+            ``__array__``, nested lists of numbers, a pyopencl Array, or ``(buffer, shape)`` with a pyopencl Buffer
+            whose first elements, float32 (`id`: uint32) in C order, are the array. Fields of three channels may have a
+            fourth, as float4 has: it is left out, but for alpha of `color`. None stands for a field that is not there.
+
+        Raises
+        ------
+        FrameError
+            If a value is none of these, or lies in memory of CUDA or of another GPU interface. Shapes and types are
+            checked by `Denoiser.denoise`.
+
+        Examples
+        --------
+        >>> frame = Frame.of(color=torch_tensor, normal=(cl_buffer, (height, width, 4)), depth=rows, motion=array)
+        """
+        given = {name: as_array(name, value, element_type(name)) for name, value in fields.items() if value is not None}
+        return cls(**{name: without_fourth(name, value) for name, value in given.items()})
+
     def present(self) -> dict[str, Any]:
         """The fields that were given, by name."""
         return {name: value for name, value in vars(self).items() if value is not None}
@@ -100,6 +130,22 @@ class Frame:
         if len(shape) != 2:
             raise FrameError("depth", "an array of shape (H, W)", f"shape {shape}")
         return int(shape[0]), int(shape[1])
+
+    @property
+    def has_alpha(self) -> bool:
+        """Whether `color` has alpha, so that the result has it too."""
+        return self.color is not None and len(self.color.shape) == 3 and self.color.shape[2] == 4
+
+    @property
+    def picture_shape(self) -> tuple[int, int, int]:
+        """Of what is made of it: (height, width, 3), or 4 where `color` has alpha."""
+        return (*self.shape, 4 if self.has_alpha else 3)
+
+    def layer(self, name: str) -> Any:
+        """What filters know by a name: a field, but `color` without its alpha; or alpha alone, (H, W)."""
+        if name == ALPHA:
+            return self.color[..., 3]
+        return self.color[..., :3] if name == "color" and self.has_alpha else getattr(self, name)
 
     def check(self, shape: Shape) -> None:
         """Raise `FrameError` unless every field is there, of this (height, width), and of a usable type."""
@@ -122,7 +168,8 @@ class Frame:
 def check_field(name: str, value: Any, shape: Shape) -> None:
     """Raise `FrameError` unless `value` can be field `name` of a frame of this (height, width)."""
     check_array(name, value)
-    allowed = [shape + ((channels,) if channels else ()) for channels in CHANNELS[name]]
+    counts = CHANNELS[name] + ((4,) if name == "color" else ())
+    allowed = [shape + ((channels,) if channels else ()) for channels in counts]
     if tuple(value.shape) not in allowed:
         raise FrameError(name, "shape " + " or ".join(map(str, allowed)), f"shape {tuple(value.shape)}")
     kinds, wanted = ("ui", "integers (uint32)") if name == "id" else ("f", "floating point (float32)")
@@ -130,6 +177,17 @@ def check_field(name: str, value: Any, shape: Shape) -> None:
         raise FrameError(name, wanted, f"dtype {value.dtype}")
     if name == "id" and value.dtype.itemsize > 4 and isinstance(value, np.ndarray):
         check_ids(value)
+
+
+def element_type(name: str) -> type[np.float32] | type[np.uint32]:
+    """The type of the elements of a field as kernels read it."""
+    return np.uint32 if name == "id" else np.float32
+
+
+def without_fourth(name: str, value: UserArray) -> UserArray:
+    """A view of the three channels of a field that has no more, where a fourth comes with them."""
+    padded = CHANNELS.get(name) == (3,) and name != "color" and len(value.shape) == 3 and value.shape[2] == 4
+    return value[..., :3] if padded else value
 
 
 def check_ids(value: np.ndarray) -> None:
@@ -147,7 +205,9 @@ def check_array(name: str, value: Any) -> None:
 
 def wrong(name: str, expected: str, got: str) -> FrameError | ArgumentError:
     """The error of an array of the user's: `FrameError` for a frame's field, else `ArgumentError`."""
-    return FrameError(name, expected, got) if name in CHANNELS else ArgumentError(f"denoise({name})", expected, got)
+    if name in (*CHANNELS, ALPHA):
+        return FrameError(name, expected, got)
+    return ArgumentError(f"denoise({name})", expected, got)
 
 
 def extent(shape: Shape) -> str:

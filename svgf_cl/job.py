@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from svgf_cl.errors import FileError
-from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.kalman import STANDARD_ERROR
 from svgf_cl.io.display import to_bytes
 from svgf_cl.io.display import write_image as write_png
 from svgf_cl.io.exr import write_image
 from svgf_cl.io.image import Image
 from svgf_cl.io.layers import RGB
+from svgf_cl.io.overlap import ahead, in_order
 from svgf_cl.io.patterns import has_number, numbered
 from svgf_cl.io.pictures import channels, denoised_file, holds
 from svgf_cl.io.reading import ReadAs
@@ -22,9 +22,12 @@ from svgf_cl.io.separate import SeparateFiles
 from svgf_cl.io.sequence import number_of
 from svgf_cl.io.shot import Shot, ShotFrame
 from svgf_cl.io.window import placed
-from svgf_cl.lights import Denoised, LightsDenoiser
+from svgf_cl.lights import Denoised
+from svgf_cl.look_ahead import both_ways
+from svgf_cl.shot_denoiser import Method, ShotDenoiser
+from svgf_cl.shot_walk import Look, ShotWalk
 
-Look = Callable[[Shot, int, ShotFrame], None]
+READ_AHEAD, WRITERS = 2, 2  # frames that are read before they are filtered, and written at a time
 
 
 @dataclass(frozen=True)
@@ -59,24 +62,24 @@ class Job:
         The frames of the shot, in order.
     targets : tuple of Path
         The file to write for each.
-    settings : Filter
+    method : Method
     how : ReadAs
         How files are read.
     separate : SeparateFiles
         Further files of each frame.
     style : Style
         What is written.
-    lights : bool
-        Whether light passes are denoised, too.
+    look_ahead : int, optional
+        How many later frames each one is made from, too; 0 for all of them, None for none.
     """
 
     paths: tuple[Path, ...]
     targets: tuple[Path, ...]
-    settings: Filter
+    method: Method
     how: ReadAs = field(default_factory=ReadAs)
     separate: SeparateFiles = field(default_factory=lambda: SeparateFiles({}))
     style: Style = field(default_factory=Style)
-    lights: bool = True
+    look_ahead: int | None = None
 
     def part(self, places: range) -> Job:
         """The same job for some of its frames."""
@@ -86,13 +89,29 @@ class Job:
 
 
 @dataclass(frozen=True, eq=False)
-class Done:
-    """A frame that is done.
+class Made:
+    """A frame that is denoised.
 
     Parameters
     ----------
     source : ShotFrame
         What was read of it.
+    denoised : Denoised
+    times : mapping of str to float
+        Milliseconds of each pass on the device.
+    """
+
+    source: ShotFrame
+    denoised: Denoised
+    times: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Done:
+    """A frame that is written.
+
+    Parameters
+    ----------
     target : Path
     kept : bool
         Whether the file was there and the same.
@@ -100,14 +119,13 @@ class Done:
         Milliseconds of each pass on the device.
     """
 
-    source: ShotFrame
     target: Path
     kept: bool
     times: Mapping[str, float]
 
 
 def run(job: Job, warm_up: int = 0, look: Look | None = None) -> Iterator[Done]:
-    """Denoise the frames of a job and write them, one after the other.
+    """Denoise the frames of a job and write them; frames are read and written while others are filtered.
 
     Parameters
     ----------
@@ -120,7 +138,7 @@ def run(job: Job, warm_up: int = 0, look: Look | None = None) -> Iterator[Done]:
     Yields
     ------
     Done
-        Of each frame that is written.
+        Of each frame that is written, in order.
 
     Raises
     ------
@@ -130,20 +148,35 @@ def run(job: Job, warm_up: int = 0, look: Look | None = None) -> Iterator[Done]:
         As of `Denoiser.denoise`.
     """
     shot = Shot(job.paths, job.how, job.separate)
-    denoiser = LightsDenoiser(shot.shape, job.settings)
-    for index, target in enumerate(job.targets):
-        source = shot.read(index)
+    frames = enumerate(made(shot, job, look))
+    wanted = (frame for index, frame in frames if index >= warm_up)
+    targets = iter(job.targets[warm_up:])
+    yield from in_order(lambda frame: finished(shot, job.style, *frame), zip(targets, wanted, strict=True), WRITERS)
+
+
+def made(shot: Shot, job: Job, look: Look | None) -> Iterator[Made]:
+    """What is made of each frame of a shot, in order."""
+    if job.look_ahead is not None:
+        walk = ShotWalk(shot, job.method, look)
+        for (_, source), parts in both_ways(walk, sorted(shot.cuts), job.look_ahead or None):
+            yield Made(source, walk.composed(parts), walk.forward.profile())
+        return
+    denoiser = ShotDenoiser(shot.shape, job.method, len(shot.reading.lights))
+    for index, source in enumerate(ahead(map(shot.read, range(len(shot))), READ_AHEAD)):
         if look:
             look(shot, index, source)
         if index in shot.cuts:
             denoiser.reset()
-        denoised = denoiser.denoise(source.frame, source.lights if job.lights else ())
-        if index >= warm_up:
-            kept = write(target, result(shot, source, denoised, job.style))
-            if job.style.png:
-                shown = placed(denoised.picture, shot.window, source.image.windows.display, 0.0)
-                write_png(png_of(target), to_bytes(shown, job.style.exposure))
-            yield Done(source, target, kept, denoiser.profile())
+        yield Made(source, denoiser.denoise(source.frame, source.lights), denoiser.profile())
+
+
+def finished(shot: Shot, style: Style, target: Path, made: Made) -> Done:
+    """Write the files of a frame."""
+    kept = write(target, result(shot, made.source, made.denoised, style))
+    if style.png:
+        shown = placed(made.denoised.picture, shot.window, made.source.image.windows.display, 0.0)
+        write_png(png_of(target), to_bytes(shown, style.exposure))
+    return Done(target, kept, made.times)
 
 
 def result(shot: Shot, source: ShotFrame, denoised: Denoised, style: Style) -> Image:
@@ -156,7 +189,7 @@ def result(shot: Shot, source: ShotFrame, denoised: Denoised, style: Style) -> I
         planes[STANDARD_ERROR] = placed(denoised.standard_error, shot.window, own, 0.0)
     if style.layer:
         planes = {in_layer(name, shot.reading.view_layer, style.layer): plane for name, plane in planes.items()}
-    return denoised_file(planes, source.image, plain=style.plain)
+    return denoised_file(planes, source.image, beside=shot.reading.picture[0], plain=style.plain)
 
 
 def in_layer(channel: str, view_layer: str, layer: str) -> str:

@@ -8,14 +8,13 @@ light. Where the passes add up to more than the picture, they are darkened to it
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from svgf_cl.denoiser import Denoiser
+from svgf_cl.denoisers import Denoisers
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.kalman import STANDARD_ERROR
 from svgf_cl.frame import LUMINANCE, Frame, Shape
@@ -28,10 +27,8 @@ Channels = tuple[str, ...]
 # and so are the factors and the picture.
 ROUNDING = 2.0**-9
 LEAST = 1e-6  # a difference that is nothing, where there is no light
-# The share of the first frame's pixels that may be darker than the sum of their lights. If it is greater, the passes
-# are not parts of the picture.
-STRAY = 0.01
 WHOLE, REST = ("picture",), ("rest",)
+WEIGHTS = np.array(LUMINANCE, np.float32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,18 +40,50 @@ class Denoised:
     picture : (H, W, 3) float32
         Linear HDR radiance.
     lights : mapping of tuple of str to (H, W, 3) float32
-        The denoised passes, by their channels; their sum, each times its factor, is the picture.
+        The denoised passes, by their channels, and the factors of passes that were filtered; the picture is their sum.
     standard_error : (H, W) float32, optional
         Of the picture's luminance, where the filter tells it.
     """
 
     picture: Picture
     lights: Mapping[Channels, Picture]
-    standard_error: npt.NDArray[np.float32] | None = None
+    standard_error: Picture | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """A frame, taken apart into what is filtered on its own.
+
+    Parameters
+    ----------
+    frame : Frame
+        The guides; its color is read where there are no lights.
+    lights : sequence of Light
+        Parts of the picture; none to filter it as a whole.
+    rest : (H, W, 3) float32, optional
+        What the picture has beyond the sum of the lights; below 0 where it has less.
+    factors : mapping of tuple of str to (H, W, 3) float32
+        The factors of lights that are others than in the file, by their channels.
+    """
+
+    frame: Frame
+    lights: Sequence[Light] = ()
+    rest: Picture | None = None
+    factors: Mapping[Channels, Picture] = field(default_factory=dict)
+
+    def composed(self, made: Mapping[Channels, Picture], error: Picture | None = None) -> Denoised:
+        """Put the picture together from what `LightsDenoiser.filtered` made of the parts."""
+        if self.rest is None:
+            return Denoised(made[WHOLE], {}, error)
+        terms = [multiplied(made.get(light.channels, light.radiance), light.factor) for light in self.lights]
+        terms.append(np.minimum(self.rest, 0.0))
+        terms += [made[REST]] if REST in made else []
+        lights = {light.channels: made.get(light.channels, light.radiance) for light in self.lights if light.filtered}
+        return Denoised(np.sum(terms, axis=0, dtype=np.float32), {**lights, **self.factors}, error)
 
 
 class LightsDenoiser:
-    """Denoises frames of one size, with the light passes that their pictures are the sum of.
+    """Denoises frames of one size, light by light.
 
     Parameters
     ----------
@@ -62,97 +91,54 @@ class LightsDenoiser:
         (height, width) in pixels.
     settings : Filter
         For all lights alike.
+    share : float
+        As of `Denoisers`.
     """
 
-    def __init__(self, shape: Shape, settings: Filter) -> None:
-        self._shape, self._settings = shape, settings
-        self._denoisers: dict[Channels, Denoiser] = {}
-        self._are_parts: bool | None = None
+    def __init__(self, shape: Shape, settings: Filter, share: float = 1.0) -> None:
+        self._denoisers = Denoisers(shape, settings, share)
 
-    def denoise(self, frame: Frame, lights: Sequence[Light] = ()) -> Denoised:
-        """Denoise the next frame.
-
-        Parameters
-        ----------
-        frame : Frame
-        lights : sequence of Light
-            What its picture is the sum of; none to filter the picture as a whole.
+    def filtered(self, parts: Parts) -> dict[Channels, Picture]:
+        """Filter the parts of the next frame, by their channels, `REST` or `WHOLE`; one that was dark so far is left.
 
         Raises
         ------
         SvgfError
             As `Denoiser.denoise`.
         """
-        if not lights:
-            return Denoised(self._filtered(WHOLE, frame), {}, self._error(WHOLE))
-        lights = [finite(light) for light in lights]
-        rest = remainder(frame, lights)
-        if not self._checked(rest):
-            alone = replace(frame, direct=None, indirect=None, emission=None)
-            return Denoised(self._filtered(WHOLE, alone), {}, self._error(WHOLE))
-        lights, rest = limited(lights, rest)
-        made = {light.channels: self._light(frame, light) for light in lights if light.filtered}
-        picture = np.minimum(rest, np.float32(0.0))
-        for light in lights:
-            picture += multiplied(made.get(light.channels, light.radiance), light.factor)
-        if rest.max(initial=0.0) > 0.0 or REST in self._denoisers:
-            picture += self._filtered(REST, single(frame, np.maximum(rest, 0.0), frame.albedo))
-        return Denoised(picture, made, self._error_of_sum(lights))
+        frame, rest = parts.frame, parts.rest
+        if rest is None:
+            return {WHOLE: self._denoisers.denoise(WHOLE, frame)}
+        made = {}
+        for light in parts.lights:
+            if light.filtered and (light.channels in self._denoisers or light.radiance.any()):
+                albedo = frame.albedo if light.factor is None or light.reflects else None
+                made[light.channels] = self._denoisers.denoise(light.channels, single(frame, light.radiance, albedo))
+        if REST in self._denoisers or rest.max(initial=0.0) > 0.0:
+            made[REST] = self._denoisers.denoise(REST, single(frame, np.maximum(rest, 0.0), frame.albedo))
+        return made
+
+    def stage(self, key: Channels, name: str) -> Picture:
+        """An intermediate result of the last frame of a part; errors as of `Denoiser.stage`."""
+        return self._denoisers.stage(key, name)
+
+    def standard_error(self, parts: Parts) -> Picture | None:
+        """That of the sum of the parts of the last frame, (H, W), whose noise is independent; None if unknown."""
+        factors = {light.channels: light.factor for light in parts.lights}
+        squares = []
+        for key in (*factors, REST, WHOLE):
+            if self._denoisers.has_stage(key, STANDARD_ERROR):
+                error, factor = self.stage(key, STANDARD_ERROR), factors.get(key)
+                squares.append(np.square(error if factor is None else error * (factor @ WEIGHTS)))
+        return np.sqrt(np.sum(squares, axis=0, dtype=np.float32)) if squares else None
 
     def reset(self) -> None:
         """Forget the past, as at a cut."""
-        for denoiser in self._denoisers.values():
-            denoiser.reset()
+        self._denoisers.reset()
 
     def profile(self) -> dict[str, float]:
         """Milliseconds on the device of each pass of the last frame, all lights together."""
-        total: dict[str, float] = {}
-        for denoiser in self._denoisers.values():
-            for name, time in denoiser.profile().items():
-                total[name] = total.get(name, 0.0) + time
-        return total
-
-    def _light(self, frame: Frame, light: Light) -> Picture:
-        """A light, filtered; one that has been dark so far takes no filter."""
-        if light.channels not in self._denoisers and not light.radiance.any():
-            return light.radiance
-        albedo = frame.albedo if light.factor is None else None
-        return self._filtered(light.channels, single(frame, light.radiance, albedo))
-
-    def _filtered(self, key: Channels, frame: Frame) -> Picture:
-        if key not in self._denoisers:
-            self._denoisers[key] = Denoiser(self._shape, settings=self._settings)
-        result: Picture = self._denoisers[key].denoise(frame)
-        return result
-
-    def _checked(self, rest: Picture) -> bool:
-        """Whether the passes are parts of the picture, told from the first frame; a warning where they are not."""
-        if self._are_parts is None:
-            share = float((rest.min(axis=-1) < 0.0).mean())
-            self._are_parts = share <= STRAY
-            if not self._are_parts:
-                warnings.warn(
-                    f"the light passes add up to more than the picture in {100 * share:.0f} % of the pixels, so they"
-                    " are left as they are, and the picture is denoised as a whole",
-                    stacklevel=3,
-                )
-        return self._are_parts
-
-    def _error(self, key: Channels) -> npt.NDArray[np.float32] | None:
-        denoiser = self._denoisers.get(key)
-        return denoiser.stage(STANDARD_ERROR) if denoiser and STANDARD_ERROR in denoiser.stages else None
-
-    def _error_of_sum(self, lights: Sequence[Light]) -> npt.NDArray[np.float32] | None:
-        """The standard error of the sum of lights, whose noise is independent."""
-        factors = {light.channels: light.factor for light in lights}
-        squares = []
-        for key in self._denoisers:
-            error, factor = self._error(key), factors.get(key)
-            if error is not None:
-                squares.append(
-                    np.square(error if factor is None else error * (factor @ np.array(LUMINANCE, np.float32)))
-                )
-        return np.sqrt(np.sum(squares, axis=0, dtype=np.float32)) if squares else None
+        return self._denoisers.profile()
 
 
 def single(frame: Frame, light: Picture, albedo: Picture | None) -> Frame:

@@ -69,7 +69,7 @@ class Plan:
         self._buffers = Buffers(
             workplace.queue, workplace.layout, memory_slots(pipeline), copies=workplace.keeps_stages
         )
-        self._constants = [self._uploaded(entry) for entry in pipeline.passes]
+        self._constants = uploaded(workplace.queue, pipeline)
         self._turns = [self._launches() for _ in range(2)]  # of odd and even frames: a pair's halves change places
         self._turn = itertools.cycle(self._turns)
         self._frame_number = 0
@@ -105,20 +105,21 @@ class Plan:
         if first:
             self._frame_number = 0
         done = []
-        for launch in launches:
-            event = launch.enqueue(self._at.queue, user, {"frame_number": self._frame_number})
-            self._keep(launch.entry.writes)
+        numbers = {"frame_number": self._frame_number, "past_x": 0, "past_y": 0}
+        for each in launches:
+            event = each.enqueue(self._at.queue, user, numbers)
+            self._keep(each.entry.writes)
             if after_pass:
-                after_pass(launch.entry.label, event)
-            done.append((launch.entry.label, event))
+                after_pass(each.entry.label, event)
+            done.append((each.entry.label, event))
         self._frame_number += 1
         return done
 
     def set_scalars(self, pipeline: Pipeline) -> None:
         """Take the numbers of a pipeline that is the same but for them."""
         for turn in self._turns:
-            for launch, entry in zip(turn, pipeline.passes, strict=True):
-                launch.set_scalars(entry)
+            for each, entry in zip(turn, pipeline.passes, strict=True):
+                each.set_scalars(entry)
         self.pipeline = pipeline
 
     def inherit(self, other: Plan) -> bool:
@@ -156,31 +157,61 @@ class Plan:
             if self._at.keeps_stages and isinstance(each.of, Buffer):
                 self._buffers.copy_aside(each.of)
 
-    def _uploaded(self, entry: Pass) -> dict[str, cl.Buffer]:
-        """A pass's constant arrays in device memory."""
-        queue, found = self._at.queue, {}
-        for name, values in entry.arrays.items():
-            found[name] = allocate(queue, values.nbytes, values.nbytes)
-            cl.enqueue_copy(queue, found[name], values, is_blocking=True)
-        return found
-
     def _launches(self) -> tuple[Launch, ...]:
         """The launches of the next frame."""
         self._buffers.begin_frame()
-        return tuple(map(self._launch, self.pipeline.passes, self._constants))
+        return tuple(
+            launch(self.pipeline, entry, constants, self._at, self._own(entry))
+            for entry, constants in zip(self.pipeline.passes, self._constants, strict=True)
+        )
 
-    def _launch(self, entry: Pass, constants: Mapping[str, cl.Buffer]) -> Launch:
-        at = self._at
-        defines = {"VW": at.tuning.vector_width, **self.pipeline.defines}
-        kernel = cl.Kernel(programs.build(at.queue.context, at.queue.device, entry.source, defines), entry.kernel)
-        own = {each.argument: self._buffers[each.of] for each in entry.accesses if isinstance(each.of, Buffer)}
-        layouts = zip(entry.sizes, (at.layout, at.layout.every(entry.coarse_spacing)), strict=False)
-        sizes = {name: layout.size for name, layout in layouts}
-        fixed: dict[str, Argument] = {**sizes, **scalar_arguments(entry), **constants, **own}
-        work_group = fitting(at.tuning.work_group, kernel, at.queue.device)
-        written = at.layout.every(entry.spacing)
-        work_items = written.work_items(at.tuning.vector_width, work_group, entry.row_step)
-        return Launch(entry, kernel, fixed, work_items, work_group)
+    def _own(self, entry: Pass) -> dict[str, cl.Buffer]:
+        return {each.argument: self._buffers[each.of] for each in entry.accesses if isinstance(each.of, Buffer)}
+
+
+def uploaded(queue: cl.CommandQueue, pipeline: Pipeline) -> list[dict[str, cl.Buffer]]:
+    """The constant arrays of each pass in device memory, by the kernel's names."""
+    found: list[dict[str, cl.Buffer]] = []
+    for entry in pipeline.passes:
+        found.append({name: allocate(queue, values.nbytes, values.nbytes) for name, values in entry.arrays.items()})
+        for name, buffer in found[-1].items():
+            cl.enqueue_copy(queue, buffer, entry.arrays[name], is_blocking=True)
+    return found
+
+
+def launch(
+    pipeline: Pipeline,
+    entry: Pass,
+    constants: Mapping[str, cl.Buffer],
+    at: Workplace,
+    own: Mapping[str, cl.Buffer],
+    past: Layout | None = None,
+) -> Launch:
+    """A pass of a pipeline made ready to run.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+    entry : Pass
+    constants, own : mapping of str to pyopencl.Buffer
+        The memory of its constant arrays and of the denoiser's buffers, by the kernel's names.
+    at : Workplace
+    past : Layout, optional
+        Of the buffers that the previous frame left, if it is not that of the others.
+    """
+    defines = {"VW": at.tuning.vector_width, **pipeline.defines}
+    kernel = cl.Kernel(programs.build(at.queue.context, at.queue.device, entry.source, defines), entry.kernel)
+    layouts = {
+        "size": at.layout,
+        "coarse_size": at.layout.every(entry.coarse_spacing),
+        "past_size": past or at.layout,
+    }
+    sizes = {name: layouts[name].size for name in entry.sizes}
+    fixed: dict[str, Argument] = {**sizes, **scalar_arguments(entry), **constants, **own}
+    work_group = fitting(at.tuning.work_group, kernel, at.queue.device)
+    written = at.layout.every(entry.spacing)
+    work_items = written.work_items(at.tuning.vector_width, work_group, entry.row_step)
+    return Launch(entry, kernel, fixed, work_items, work_group)
 
 
 def fitting(work_group: Grid, kernel: cl.Kernel, device: cl.Device) -> Grid:

@@ -7,6 +7,7 @@ from functools import reduce
 from typing import Any
 
 import numpy as np
+import pyopencl as cl
 from numpy.typing import NDArray
 
 from svgf_cl.frame import Frame, Shape
@@ -82,7 +83,7 @@ class View:
     @classmethod
     def of(cls, frame: Frame) -> View:
         """Look at a frame; arrays on a device are copied from there."""
-        given = {name: on_host(value) for name, value in frame.present().items()}
+        given = {name: on_host(frame.layer(name)) for name in frame.present()}
         step = -(-given["depth"].shape[0] // ENOUGH_ROWS)
         some = {name: value[(step - 1) // 2 :: step, (step - 1) // 2 :: step] for name, value in given.items()}
         finite = {name: np.nan_to_num(value.astype(np.float64), posinf=0, neginf=0) for name, value in some.items()}
@@ -109,8 +110,13 @@ class View:
 
 
 def on_host(value: Any) -> NDArray[Any]:
-    """A numpy.ndarray of it; a pyopencl.array.Array is copied from its device."""
-    return np.asarray(value.get() if hasattr(value, "get") else value)
+    """A numpy.ndarray of it; for a pyopencl.array.Array, whatever its strides, all of its buffer is copied."""
+    if isinstance(value, np.ndarray):
+        return value
+    memory = np.empty(value.base_data.size, np.uint8)
+    cl.enqueue_copy(cl.CommandQueue(value.context), memory, value.base_data, wait_for=value.events)
+    elements: NDArray[Any] = np.ndarray(value.shape, value.dtype, memory, value.offset, value.strides)
+    return elements
 
 
 def in_range(depth: NDArray[Any]) -> Mask:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Annotated
 
@@ -11,13 +12,15 @@ from svgf_cl.cli import reading
 from svgf_cl.cli.console import kept_of, show_times, tracked
 from svgf_cl.cli.options import AllowGaps, Exposure, FilterName, Frames, SettingTexts, parse_settings
 from svgf_cl.cli.remarks import Remarks
-from svgf_cl.errors import SvgfError
+from svgf_cl.errors import SvgfError, shown
 from svgf_cl.filters import DEFAULT
 from svgf_cl.io.atomic import output_folder
 from svgf_cl.io.patterns import has_number, parse_range
 from svgf_cl.io.separate import SeparateFiles
 from svgf_cl.io.sequence import check_leftovers, find_frames, number_of
 from svgf_cl.job import Job, Style, png_of, run, target_paths
+from svgf_cl.prefilter import EFFORTS, Effort
+from svgf_cl.shot_denoiser import Method
 
 Separate = Annotated[Path | None, typer.Option(metavar="FILES", help="Files of this field alone, by number.")]
 
@@ -37,10 +40,23 @@ def denoise(
         int,
         typer.Option(min=0, metavar="N", help="Filter N more frames before the first of --frames, to have a past."),
     ] = 0,
+    look_ahead: Annotated[
+        str | None,
+        typer.Option(
+            metavar="N|all",
+            help="Make each picture from N later frames, too, or all of the shot: steadier, three times as slow.",
+        ),
+    ] = None,
     lights: Annotated[
         bool,
         typer.Option("--passes/--no-passes", help="Denoise light passes, too, so that they add up to the picture."),
     ] = True,
+    prefilter: Annotated[
+        str,
+        typer.Option(
+            metavar="on|off|auto", help="Take noise out of normals, depth and factors of passes: under depth of field."
+        ),
+    ] = "auto",
     layer: Annotated[
         str | None, typer.Option(metavar="NAME", help="Add what is denoised as a layer; leave the rest as it is.")
     ] = None,
@@ -94,11 +110,11 @@ def denoise(
     job = Job(
         tuple(sources[first : selected.stop]),
         tuple(targets[first : selected.stop]),
-        parse_settings(filter_, set_),
+        Method(parse_settings(filter_, set_), lights, parse_effort(prefilter)),
         reading.read_as(format_, maps, view_layer, cameras, still_camera, motion_scale, motion_flip),
         SeparateFiles.of({name: path for name, path in fields.items() if path}),
         Style(plain, layer, png, exposure),
-        lights,
+        parse_look_ahead(look_ahead),
     )
     check_leftovers(folder, [*targets, *(png_of(target) for target in targets if png)])
     total, kept, times = len(selected), 0, []
@@ -108,6 +124,23 @@ def denoise(
         times.append(done.times)
     show_times(times)
     print(f"{total} frames in {folder}{kept_of(kept)}")
+
+
+def parse_effort(text: str) -> Effort:
+    """Read how much is filtered beforehand."""
+    for effort in EFFORTS:
+        if text == effort:
+            return effort
+    raise SvgfError(f"--prefilter: expected {' or '.join(EFFORTS)}, got {shown(text)}")
+
+
+def parse_look_ahead(text: str | None) -> int | None:
+    """Read a number of frames, or ``all`` as 0."""
+    if text is None or text == "all":
+        return None if text is None else 0
+    if not re.fullmatch(r"[1-9]\d{,5}", text, re.ASCII):
+        raise SvgfError(f"--look-ahead: expected a number of frames, or all, got {shown(text)}")
+    return int(text)
 
 
 def chosen(sources: list[Path], span: str | None) -> range:

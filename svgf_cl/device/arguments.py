@@ -99,5 +99,8 @@ def layout_of(shape: Shape, tuning: Tuning, settings: Filter) -> Layout:
     layout, planes = Layout(*shape, tuning.row_alignment), settings.pipeline(Inputs.every()).widest
     if not layout.indexable(planes):
         side = math.isqrt(2**31 // planes) // 1000 * 1000
-        raise SvgfError(f"Denoiser: expected an image of at most about {side} x {side} pixels, got {shown(shape)}")
+        raise SvgfError(
+            f"Denoiser: expected an image of at most about {side} x {side} pixels, got {shown(shape)}; work in "
+            "tiles, as svgf_cl.denoiser_for(shape, inputs) does"
+        )
     return layout

@@ -10,7 +10,7 @@ import pyopencl as cl
 from svgf_cl.device.layout import Layout
 from svgf_cl.device.memory_plan import Slot
 from svgf_cl.device.opencl_errors import allocate, check_room, lack_of_room
-from svgf_cl.filters.pipeline import Buffer, Life, Resource
+from svgf_cl.filters.pipeline import Buffer, Resource, history_of
 
 
 class Buffers:
@@ -93,8 +93,3 @@ class Buffers:
         with lack_of_room(self._queue.device, nbytes, needed):  # some drivers look for the room only now
             cl.enqueue_fill_buffer(self._queue, buffer, np.float32(0), 0, nbytes)
         return buffer
-
-
-def history_of(resource: Resource) -> Buffer:
-    """What a frame finds of a lasting resource when it begins."""
-    return Buffer(resource, previous=resource.life is Life.PAIR)

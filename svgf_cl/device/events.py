@@ -7,7 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 import pyopencl as cl
 import pyopencl.array as cl_array
 
-from svgf_cl.frame import UserArray, wrong
+from svgf_cl.frame import wrong
+from svgf_cl.interchange import UserArray
 
 
 def pending(wait_for: Sequence[cl.Event], arrays: Mapping[str, UserArray], queue: cl.CommandQueue) -> list[cl.Event]:

@@ -69,7 +69,8 @@ def no_room(device: cl.Device, nbytes: int, needed: int) -> DeviceError:
     return DeviceError(
         f"{device.name} has no room for a buffer of {mebibytes(nbytes)}, of {mebibytes(needed)} needed in all; it has "
         f"{mebibytes(device.global_mem_size)}, {mebibytes(device.max_mem_alloc_size)} for one buffer, less what is in "
-        "use. Free some, or take smaller frames or 16-bit Settings (half_guides, half_history)"
+        "use. Free some, take smaller frames or 16-bit Settings (half_guides, half_history), or work in tiles, as "
+        "svgf_cl.denoiser_for(shape, inputs) does"
     )
 
 

@@ -47,6 +47,8 @@ MORE_HEADERS: Mapping[str, tuple[str, ...]] = {
     "change": ("innovation.clh", "significance.clh"),
     "update": ("innovation.clh", "significance.clh"),
 }
+# What works on memory as such, of no layout and vector width.
+WITHOUT_HEADERS = ("strided_copy",)
 
 # No fast-math: it would allow the compiler to drop the guards against NaN and infinity. Weights too small to count are
 # denormal numbers, and slow: without them an a-trous level takes a seventh less time on traced frames.
@@ -81,7 +83,8 @@ def names() -> list[str]:
 def source(name: str) -> str:
     """Return what is compiled for a source file: the headers, then the file itself."""
     kernels = resources.files("svgf_cl.kernels")
-    files = (*HEADERS, *MORE_HEADERS.get(name, ()), f"{name}.cl")
+    headers = () if name in WITHOUT_HEADERS else (*HEADERS, *MORE_HEADERS.get(name, ()))
+    files = (*headers, f"{name}.cl")
     return "\n".join(f'#line 1 "{file}"\n{(kernels / file).read_text(encoding="utf-8")}' for file in files)
 
 

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from svgf_cl.filters import operations
 from svgf_cl.filters.operations import DISTANCE, EXP, LightOperations
-from svgf_cl.filters.pipeline import Access, Life, Number, Pass, Pipeline, Quantity, Resource, access, user
+from svgf_cl.filters.pipeline import PAST, Access, Life, Number, Pass, Pipeline, Quantity, Resource, access, user
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.filters.taps import BLOCK, CROSS, HERE, footprint, grid
+from svgf_cl.filters.temporal import Plane
 from svgf_cl.filters.wavelet import WaveletFilter
 from svgf_cl.settings import documented, number, switch
 
@@ -140,7 +143,7 @@ class Kalman(WaveletFilter):
             "predict",
             "predict",
             scalars={name: getattr(self, name) for name in ("depth_threshold", "normal_threshold", "albedo_threshold")},
-            per_frame=("frame_number",),
+            per_frame=("frame_number", *PAST),
             reads=(
                 user("motion", channels=inputs.motion),
                 access(guide, taps=dict.fromkeys(guide.names, HERE) | {"depth": CROSS}),
@@ -150,6 +153,7 @@ class Kalman(WaveletFilter):
                 access(filtered, "filtered", {"color": taps}),
             ),
             writes=(access(self.prediction(inputs)), access(self.innovation(inputs))),
+            rarely=(footprint(4),),  # thin geometry: the nine pixels around the nearest
             operations=operations.predict(inputs),
         )
 
@@ -220,6 +224,7 @@ class Kalman(WaveletFilter):
                 access(self.correction(inputs), taps=dict.fromkeys(self.correction(inputs).names, BLOCK)),
             ),
             writes=(access(state, taps=dict.fromkeys(CARRIED, HERE)), access(self.expected(inputs))),
+            rarely=(grid(3),),  # what is too thin for every second pixel
             operations=operations.update(inputs),
         )
 
@@ -241,6 +246,7 @@ class Kalman(WaveletFilter):
                 access(self.guidance(inputs, "guidance_1"), "first"),
                 access(self.guidance(inputs, "guidance")),
             ),
+            rarely=(grid(3),),  # where history is short
             operations=operations.guidance(inputs),
         )
 
@@ -261,6 +267,10 @@ class Kalman(WaveletFilter):
     def age(self, inputs: Inputs) -> Access:
         """What antialiasing wants to know of the past: one over the number of samples that the history stands for."""
         return access(self.state(inputs), "moments", {"inverse_count": grid(1)})
+
+    def uncertainty(self, stage: Callable[[str], Plane]) -> Plane:
+        """As every filter's, by the state; of several signals the mean."""
+        return np.asarray(stage("inverse_count").mean(axis=0))
 
     def state(self, inputs: Inputs) -> Resource:
         """What is known of the light: its mean, the mean's variance, and what the next frame needs to go on."""

@@ -18,7 +18,9 @@ from svgf_cl.filters.taps import HERE, Taps
 from svgf_cl.frame import CHANNELS
 
 OUT = "out"  # the user's array for the result
-FRAME_SCALARS: Mapping[str, type[np.generic]] = {"frame_number": np.int32}  # since the last cut, from 0
+# Since the last cut, from 0; and where a pixel of this frame lies in the past, from its own place.
+FRAME_SCALARS: Mapping[str, type[np.generic]] = dict.fromkeys(("frame_number", "past_x", "past_y"), np.int32)
+PAST = ("past_x", "past_y")
 
 Number = int | float
 
@@ -179,6 +181,18 @@ class Access:
     of: Buffer | str
     uses: tuple[Use, ...]
 
+    @property
+    def resource(self) -> Resource:
+        """Of a buffer; an array of the user's has none."""
+        if isinstance(self.of, str):
+            raise ValueError(f"{self.argument}: expected a buffer, got the user's {self.of}")
+        return self.of.resource
+
+
+def history_of(resource: Resource) -> Buffer:
+    """What a frame finds of a lasting resource when it begins."""
+    return Buffer(resource, previous=resource.life is Life.PAIR)
+
 
 def user(name: str, argument: str = "", channels: int = 0) -> Access:
     """An access to one of the user's arrays, or to so many of its channels."""
@@ -205,8 +219,8 @@ def spacing_of(access: Access) -> int:
 class Pass:
     """One kernel launch.
 
-    Its arguments are the image's size, that of its coarse buffers if it has any, then what the fields below name, in
-    their order.
+    Its arguments are the image's size, that of its coarse buffers if it has any, that of the past if it reads it along
+    motion, then what the fields below name, in their order.
 
     Parameters
     ----------
@@ -217,10 +231,12 @@ class Pass:
     scalars : mapping of str to int or float
         Numbers that stay the same from frame to frame; kernels get a whole one as int, any other as float.
     per_frame : tuple of str
-        Numbers that change with the frame, out of `FRAME_SCALARS`.
+        Numbers that change with the frame, out of `FRAME_SCALARS`; `PAST` for a pass that reads along motion.
     arrays : mapping of str to array
         Constants in device memory, such as a network's weights.
     reads, writes : tuple of Access
+    rarely : tuple of Taps
+        Pixels at which it also reads any of its buffers, but not in a steady state: where history is short, say.
     operations : float
         Floating-point operations a pixel that it writes, counted from the equations (`svgf_cl.filters.operations`).
     level : int, optional
@@ -236,6 +252,7 @@ class Pass:
     arrays: Mapping[str, np.ndarray] = field(default_factory=dict, compare=False)
     reads: tuple[Access, ...] = ()
     writes: tuple[Access, ...] = ()
+    rarely: tuple[Taps, ...] = ()
     operations: float = field(default=0.0, compare=False)
     level: int | None = None
     row_step: int = 1
@@ -245,6 +262,8 @@ class Pass:
             raise ValueError(f"{self.label}: expected arguments of different names, got {', '.join(self.arguments)}")
         if len({spacing_of(each) for each in self.writes}) > 1 or len({*self._spacings} - {1}) > 1:
             raise ValueError(f"{self.label}: expected to write every pixel or every so many, got {self._spacings}")
+        if self.follows_motion != set(PAST).issubset(self.per_frame):
+            raise ValueError(f"{self.label}: expected {' and '.join(PAST)} if it reads along motion, and only then")
         kept = {name: np.array(values, order="C") for name, values in self.arrays.items()}  # apart from the owner's
         for values in kept.values():
             values.flags.writeable = False
@@ -282,7 +301,22 @@ class Pass:
     @property
     def sizes(self) -> tuple[str, ...]:
         """The kernel's names for the layouts of its buffers."""
-        return ("size",) if self.coarse_spacing == 1 else ("size", "coarse_size")
+        coarse = ("coarse_size",) if self.coarse_spacing > 1 else ()
+        return ("size", *coarse, *(("past_size",) if self.follows_motion else ()))
+
+    def taps(self, access: Access) -> tuple[Taps, ...]:
+        """Where it reads one of its accesses, rare taps included."""
+        return (*(use.taps for use in access.uses), *self.rarely)
+
+    @property
+    def follows_motion(self) -> bool:
+        """Whether it reads the past where pixels were then."""
+        return any(use.taps.follow_motion for each in self.reads for use in each.uses)
+
+    def reach(self, access: Access) -> int:
+        """Pixels of the image from one that it writes to the farthest that it reads of an access around it."""
+        steady = max((use.taps.reach for use in access.uses), default=0) * spacing_of(access)
+        return max(steady, *(taps.reach for taps in self.rarely), 0)
 
     @property
     def arguments(self) -> tuple[str, ...]:
@@ -350,6 +384,18 @@ class Pipeline:
                     raise ValueError(f"{resource.name}: expected {name} {found[name]} as in others, got {value}")
         return found
 
+    @cached_property
+    def unread(self) -> tuple[Resource, ...]:
+        """The resources that no pass reads, in this frame or the next."""
+        read = {each.of.resource for entry in self.passes for each in entry.reads if isinstance(each.of, Buffer)}
+        return tuple(resource for resource in self.resources if resource not in read)
+
+    @cached_property
+    def user_nbytes(self) -> dict[str, int]:
+        """Bytes a pixel of each of the user's arrays, the result included."""
+        accesses = (each for entry in self.passes for each in entry.accesses)
+        return {each.of: each.uses[0].quantity.nbytes for each in accesses if isinstance(each.of, str)}
+
     @property
     def widest(self) -> int:
         """Planes of the largest buffer."""
@@ -358,7 +404,13 @@ class Pipeline:
     @property
     def reach(self) -> int:
         """Pixels by which the widest taps lie off their pixel."""
-        return max(use.taps.reach for entry in self.passes for each in entry.reads for use in each.uses)
+        return max(taps.reach for entry in self.passes for each in entry.reads for taps in entry.taps(each))
+
+    def past_of(self, entry: Pass) -> tuple[Access, ...]:
+        """What a pass reads of what the previous frame left; none is to the user's arrays."""
+        written = {each.of for earlier in self.passes[: self.passes.index(entry)] for each in earlier.writes}
+        lasting = {history_of(resource) for resource in self.lasting}
+        return tuple(each for each in entry.reads if each.of in lasting - written)
 
     def shown(self) -> Iterator[tuple[str, Resource, Quantity]]:
         """Every stage: its name, and what it shows of which resource; in the order in which passes write them."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from svgf_cl.filters.pipeline import Life, Number, Pass, Quantity, Resource, access
 from svgf_cl.filters.signals import Inputs
-from svgf_cl.filters.taps import HERE
+from svgf_cl.filters.taps import HERE, grid
 from svgf_cl.filters.temporal import TemporalFilter
 from svgf_cl.settings import choice, number
 
@@ -74,5 +74,6 @@ class SpatialFilter(TemporalFilter):
             scalars=self.surface_scalars,
             reads=(access(guide, taps={}), access(self.moments(inputs), taps={"length": HERE, "variance": HERE})),
             writes=(access(accumulated, "illumination", {"variance": HERE}),),
+            rarely=(grid(3),),  # where history is short
             operations=2 + len(inputs.signals),  # a choice by the length, and by whether anything was hit
         )

@@ -15,7 +15,7 @@ class Taps:
     Parameters
     ----------
     offsets : frozenset of (int, int), pixels
-        (dx, dy) from its own pixel, or from where the pixel was in the previous frame.
+        (dx, dy) from its own pixel, or from that at or above and left of where the pixel was in the previous frame.
     follow_motion : bool
         Whether they lie around where the pixel was, so anywhere in the image.
     """
@@ -44,8 +44,8 @@ def grid(radius: int, step: int = 1) -> Taps:
 
 
 def footprint(width: int) -> Taps:
-    """The width x width pixels around where the pixel was in the previous frame."""
-    return Taps(square(range(width)), follow_motion=True)
+    """The width x width pixels, an even number, around where the pixel was in the previous frame."""
+    return Taps(square(range(1 - width // 2, width // 2 + 1)), follow_motion=True)
 
 
 HERE = grid(0)

@@ -5,16 +5,22 @@ Equations: docs/algorithm.md, sections 1, 2, 5 and 6.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
 
 from svgf_cl.errors import SettingsError
 from svgf_cl.filters import operations
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.formats import Format
-from svgf_cl.filters.pipeline import OUT, Access, Life, Pass, Quantity, Resource, access, user
+from svgf_cl.filters.pipeline import OUT, PAST, Access, Life, Pass, Quantity, Resource, access, user
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.filters.taps import CROSS, HERE, footprint, grid
 from svgf_cl.settings import number, switch
+
+Plane = NDArray[np.float32]
 
 UNKNOWN = -1e30  # in TAA's history before the first frame: less than KNOWN of taa.cl, and finite, so 0 times it is 0
 
@@ -160,7 +166,7 @@ class TemporalFilter(Filter):
                 "normal_threshold": self.normal_threshold,
                 "albedo_threshold": self.albedo_threshold,
             },
-            per_frame=("frame_number",),
+            per_frame=("frame_number", *PAST),
             reads=(
                 user("motion", channels=inputs.motion),
                 access(guide, taps=dict.fromkeys(guide.names, HERE) | {"depth": CROSS}),
@@ -170,6 +176,7 @@ class TemporalFilter(Filter):
                 access(moments, taps=dict.fromkeys(moments.names, taps), previous=True),
             ),
             writes=(access(accumulated, "accumulated", {"color": HERE}), access(moments)),
+            rarely=(footprint(4),),  # thin geometry: the nine pixels around the nearest
             operations=operations.temporal(inputs),
         )
 
@@ -191,6 +198,18 @@ class TemporalFilter(Filter):
         """What antialiasing wants to know of the past: how long the history is."""
         return access(self.moments(inputs), taps={"length": grid(1)})
 
+    def uncertainty(self, stage: Callable[[str], Plane]) -> Plane:
+        """Variance of the light that is kept of each pixel, in units of that of a sample, (H, W).
+
+        Parameters
+        ----------
+        stage : callable
+            Reads a stage of the last frame, as `Denoiser.stage` does.
+        """
+        least = self.alpha_color / (2 - self.alpha_color)  # that of a mean whose newest sample always counts alpha
+        variance: Plane = np.maximum(1 / np.maximum(stage("history_length"), 1), np.float32(least))
+        return variance
+
     def taa_pass(self, inputs: Inputs, picture: Resource) -> Pass:
         """Temporal antialiasing."""
         color = Quantity("color", 3, stage="antialiased", unknown=UNKNOWN)
@@ -199,6 +218,7 @@ class TemporalFilter(Filter):
             "taa",
             "taa",
             scalars={"alpha_taa": self.alpha_taa, "pixel_filter": self.pixel_filter},
+            per_frame=PAST,
             reads=(
                 user("motion", channels=inputs.motion),
                 access(self.guide(inputs), taps={"depth": grid(1)}),
@@ -207,5 +227,6 @@ class TemporalFilter(Filter):
                 access(antialiased, "history", {"color": footprint(4)}, previous=True),
             ),
             writes=(access(antialiased, "next_history"), user(OUT)),
+            rarely=(grid(1),),  # motion, beside an edge
             operations=operations.taa(filters_pixels=self.pixel_filter > 0),
         )

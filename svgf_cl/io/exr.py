@@ -1,20 +1,30 @@
-"""OpenEXR files: written whole or not at all; read, as Radiance HDR is, not trusting their claims."""
+"""OpenEXR files: written whole or not at all; read not trusting their claims."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+import tempfile
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import OpenImageIO as oiio  # noqa: N813  # its documentation calls it so
+import OpenEXR
 
 from svgf_cl.errors import FileError, one_line
 from svgf_cl.io.atomic import require, unreadable, written_whole
-from svgf_cl.io.exr_header import Attributes, copy_with_header, encoded, read_attributes
-from svgf_cl.io.image import Image, Part, Plane, Windows, new_image
-from svgf_cl.io.layers import unique_names
+from svgf_cl.io.exr_header import (
+    MAGIC,
+    Attributes,
+    copy_in_ascii,
+    copy_with_header,
+    decoded,
+    encoded,
+    passing,
+    read_header,
+)
+from svgf_cl.io.exr_layout import Layout, layout_of
+from svgf_cl.io.image import COMPRESSIONS, Image, Part, Plane, Windows, new_image
+from svgf_cl.io.layers import in_usual_order, unique_names
 from svgf_cl.io.window import Window
 
 # A file that claims more bytes of pixels than these is refused, unless it is so large that they can be in it: no method
@@ -24,9 +34,6 @@ MAX_RATIO = 1032
 
 # Pixels of a display window beyond those of the data window, which cost nothing to claim: 16384 x 16384.
 MAX_DISPLAY = 2**28
-
-# Formats that hold linear light, by OpenImageIO's names for them.
-FORMATS = {"openexr": "an OpenEXR file", "hdr": "a Radiance HDR file"}
 
 
 def write_channels(path: Path, planes: Mapping[str, Plane], attributes: Mapping[str, int | float | str] = {}) -> None:
@@ -41,247 +48,207 @@ def write_channels(path: Path, planes: Mapping[str, Plane], attributes: Mapping[
 
 
 def write_image(path: Path, image: Image) -> None:
-    """Write an EXR file of these parts, channels, windows and attributes, zip compression; errors of `write_channels`.
+    """Write an EXR file of these parts, channels, windows and attributes; errors of `write_channels`.
 
     The same image makes the same file: there is no date in it but one among the attributes.
     """
     with written_whole(path) as aside:
         pixels = aside.with_name(f".pixels{aside.name}")
-        integers = [{_stored(part, name) for name in part.planes if _is_integer(part, name)} for part in image.parts]
+        parts = [_pixels(image.windows.data, index, part) for index, part in enumerate(image.parts)]
         try:
-            _write_pixels(path, pixels, image)
-            copy_with_header(pixels, aside, [part.attributes for part in image.parts], integers)
-            if not _has_last_rows(aside):
-                raise FileError(f"{path}: cannot be written (one of the attributes that it would keep is damaged)")
+            OpenEXR.File(parts).write(_name(pixels))
+            copy_with_header(pixels, aside, [part.attributes for part in image.parts])
+        except (RuntimeError, ValueError) as error:
+            raise FileError(f"{path}: cannot be written ({one_line(error)}); is there room on the disk?") from error
         finally:
             pixels.unlink(missing_ok=True)
+        if not _has_header(aside):
+            raise FileError(f"{path}: cannot be written (one of the attributes that it would keep is damaged)")
 
 
-def _write_pixels(path: Path, target: Path, image: Image) -> None:
-    """Write to `target` what will be made the file at `path`: its pixels, integers as floats of the same bits."""
-    specs = [_spec(image.windows, part) for part in image.parts]
-    output: Any = oiio.ImageOutput.create("openexr")
-    if len(specs) > 1:
-        for index, spec in enumerate(specs):
-            spec.attribute("oiio:subimagename", str(index))  # two of one name would not be written
-        done = output.open(_name(target), specs)
-    else:
-        done = output.open(_name(target), specs[0])
-    for index, (spec, part) in enumerate(zip(specs, image.parts, strict=True)):
-        pixels = np.stack([plane.view(np.float32) for plane in part.planes.values()], axis=-1)
-        done = done and (not index or output.open(_name(target), spec, "AppendSubimage")) and output.write_image(pixels)
-    complaint = one_line(output.geterror())
-    if not (output.close() and done):
-        raise FileError(f"{path}: cannot be written ({complaint}); is there room on the disk?")
-    if not _has_last_rows(target):
-        raise FileError(f"{path}: cannot be written (its end is missing); is there room on the disk?")
+def _pixels(data: Window, index: int, part: Part) -> Any:
+    """What the library must know to write the pixels of a part."""
+    window = part.elsewhere or data
+    first, last = (window.x, window.y), (window.x + window.width - 1, window.y + window.height - 1)
+    header = {
+        "compression": OpenEXR.Compression(COMPRESSIONS.index(part.lossless_compression)),
+        "type": OpenEXR.scanlineimage,
+        "dataWindow": (np.array(first, np.int32), np.array(last, np.int32)),
+        # Not yet the right one, but that of all parts, as it must be.
+        "displayWindow": (np.zeros(2, np.int32), np.zeros(2, np.int32)),
+    }
+    planes = {part.stored.get(name, name): np.ascontiguousarray(plane) for name, plane in part.planes.items()}
+    return OpenEXR.Part(header, planes, str(index))  # two of one name would not be written
 
 
-def _spec(windows: Windows, part: Part) -> oiio.ImageSpec:
-    """What OpenImageIO must know to write the pixels of a part."""
-    types = ["half" if channel in part.halves else "float" for channel in part.planes]
-    spec = oiio.ImageSpec(windows.data.width, windows.data.height, len(part.planes), types[0])
-    spec.x, spec.y, _, _ = windows.data
-    spec.channelnames = tuple(_stored(part, channel) for channel in part.planes)
-    if len(set(types)) > 1:
-        spec.channelformats = tuple(types)
-    spec.attribute("compression", "zip")
-    spec.attribute("DateTime", "")  # or there would be one
-    return spec
+def _has_header(path: Path) -> bool:
+    """Whether the library can read the header of a file."""
+    try:
+        OpenEXR.File(_name(path), header_only=True)
+    except UnicodeDecodeError:  # it could, but for a text
+        return True
+    except Exception:  # of whatever type the library's are
+        return False
+    return True
 
 
-def _stored(part: Part, channel: str) -> str:
-    """The name of a channel in the file."""
-    return part.stored.get(channel, channel)
-
-
-def _is_integer(part: Part, channel: str) -> bool:
-    """Whether a channel holds unsigned integers."""
-    return part.planes[channel].dtype == np.uint32
-
-
-def read_channels(path: Path) -> dict[str, Plane]:
-    """Read every channel of an EXR file as a (H, W) plane, float32 or uint32, by the names of `read_image`.
+def is_exr(path: Path) -> bool:
+    """Whether what is at `path` is a file that says it is an OpenEXR file.
 
     Raises
     ------
     FileError
-        As of `read_image`.
+        There is nothing, or it cannot be read.
     """
+    require(path)
+    if not path.is_file():  # but a pipe, which might keep us waiting for ever
+        return False
+    try:
+        with path.open("rb") as file:
+            return file.read(len(MAGIC)) == MAGIC
+    except OSError as error:
+        raise unreadable(path, error) from error
+
+
+def read_channels(path: Path) -> dict[str, Plane]:
+    """Read the channels of an EXR file as (H, W) planes, by the names of `read_image`; errors as of it."""
     return read_image(path).planes
 
 
-def read_attribute(path: Path, name: str) -> object:
-    """The attribute of an EXR file called `name`; None where there is none; errors as of `read_image`."""
-    with _opened(path, ("openexr",)) as (_, specs):
-        return specs[0].get(name)
+def read_attribute(path: Path, name: str) -> int | float | str | bytes | None:
+    """The attribute of the first part of an EXR file called `name`; None where there is none.
+
+    A number or a text; what is neither, as the bytes that it is. Errors are those of `read_image`.
+    """
+    parts, _ = _checked(path)
+    return decoded(parts[0][name]) if name in parts[0] else None
+
+
+def read_attributes(path: Path) -> Attributes:
+    """Read the header of the first part of an EXR file, type and bytes by name; errors as of `read_image`."""
+    parts, _ = _checked(path)
+    return parts[0]
 
 
 def read_windows(path: Path) -> Windows:
     """Read where the pixels of an EXR file lie; errors as of `read_image`."""
-    with _opened(path, ("openexr",)) as (_, specs):
-        return _windows(specs[0])
+    _, layouts = _checked(path)
+    return layouts[0].windows
 
 
-def read_image(path: Path, formats: Collection[str] = ("openexr",)) -> Image:
+def read_image(path: Path) -> Image:
     """Read all of a file, every part of it.
 
     A channel goes by its name in the file; where several parts have that name, `unique_names` says by which. Of tiles
-    in several resolutions the finest is read.
-
-    Parameters
-    ----------
-    path : Path
-    formats : collection of str
-        Those accepted, out of `FORMATS`.
+    in several resolutions the finest is read. Parts of another view than the first one, and those that do not have the
+    windows of the first part, are `Part.elsewhere`.
 
     Raises
     ------
     FileError
         The file is missing, of another format or damaged, or claims more pixels than it can hold, or what it holds is
-        of a kind that is not read: deep pixels, several views, channels with fewer pixels than others, parts with
-        pixels in different places.
+        of a kind that is not read: deep pixels, channels with fewer pixels than others.
     """
-    with _opened(path, formats) as (source, specs):
-        try:
-            is_exr = source.format_name() == "openexr"
-            attributes: list[Attributes] = read_attributes(path) if is_exr else [{}]
-            if len(attributes) != len(specs):
-                raise ValueError(f"expected a whole image, got a damaged one ({len(attributes)} parts or {len(specs)})")
-            names = unique_names([(spec.get("oiio:subimagename", ""), spec.channelnames) for spec in specs])
-        except OSError as error:
-            raise unreadable(path, error) from error
-        except UnicodeError:
-            raise
-        except ValueError as error:
-            raise FileError(f"{path}: {error}") from error
-        parts = []
-        for index, (spec, own, called) in enumerate(zip(specs, attributes, names, strict=True)):
-            pixels = _pixels(path, source, index, spec)
-            planes = {called[name]: pixels[name] for name in pixels}
-            halves = {called[name] for name in pixels if _format(spec, name) == oiio.HALF}
-            stored = {called[name]: name for name in pixels if called[name] != name}
-            parts.append(Part(planes, own, frozenset(halves), stored))
-        return Image(_windows(specs[0]), tuple(parts))
-
-
-def _pixels(path: Path, source: Any, index: int, spec: oiio.ImageSpec) -> dict[str, Plane]:
-    """The channels of a part, by their names in the file."""
-    pixels = source.read_image(index, 0, 0, spec.nchannels, "float")
-    if pixels is None:
-        raise FileError(f"{path}: expected a whole image, got a damaged one ({one_line(source.geterror())})")
-    planes: dict[str, Plane] = {}
-    for channel, name in enumerate(spec.channelnames):
-        planes[name] = np.ascontiguousarray(pixels[..., channel])
-        # As floats, integers have come as fractions of the largest one.
-        if _format(spec, name) == oiio.UINT32:
-            integers = source.read_image(index, 0, channel, channel + 1, oiio.UINT32)
-            planes[name] = np.ascontiguousarray(integers[..., 0])
-    return planes
-
-
-def _format(spec: oiio.ImageSpec, name: str) -> Any:
-    """The pixel type of a channel."""
-    return spec.channelformat(spec.channelindex(name)).basetype
-
-
-def _windows(spec: oiio.ImageSpec) -> Windows:
-    """Where the pixels of a part lie."""
-    data = Window(spec.x, spec.y, spec.width, spec.height)
-    display = Window(spec.full_x, spec.full_y, spec.full_width, spec.full_height)
-    return Windows(data, display, spec.get_float_attribute("PixelAspectRatio", 1.0))
-
-
-@contextmanager
-def _opened(path: Path, formats: Collection[str]) -> Iterator[tuple[Any, list[oiio.ImageSpec]]]:
-    """Open the file at `path`, whose header claims what can be read; all that is wrong is a FileError.
-
-    Yields the open file and what it says of each part.
-    """
-    require(path)
-    if not path.is_file():  # but a folder; or a pipe, which might keep us waiting for ever
-        raise FileError(f"{path}: expected {_described(formats)}, found something that is no file")
+    headers, layouts = _checked(path)
+    view = next((layout.view for layout in layouts if layout.view), "")
+    here = [layout.view in ("", view) and layout.windows == layouts[0].windows for layout in layouts]
     try:
-        source = oiio.ImageInput.open(_name(path))
-        if source is None or source.format_name() not in formats:
-            got = f"the format {source.format_name()}" if source else one_line(oiio.geterror())
-            raise FileError(f"{path}: expected {_described(formats)}, got {got}")
-        specs = _specs(source)
-        "".join(name for spec in specs for name in spec.channelnames).encode()
-        _check_claims(path, specs)
-        _check_kind(path, specs)
-        yield source, specs
-    except UnicodeError as error:
-        raise FileError(f"{path}: expected text in UTF-8 in its header, got another ({error})") from error
+        called = iter(
+            unique_names([(part.name, part.channels) for part, read in zip(layouts, here, strict=True) if read])
+        )
+    except ValueError as error:
+        raise FileError(f"{path}: {error}") from error
+    parts = [
+        _part(header, layout, planes, next(called) if read else None)
+        for header, layout, planes, read in zip(headers, layouts, _planes(path, layouts), here, strict=True)
+    ]
+    return Image(layouts[0].windows, tuple(parts))
+
+
+def _part(header: Attributes, layout: Layout, planes: Mapping[str, Plane], called: Mapping[str, str] | None) -> Part:
+    """A part whose channels go by other names than in the file; without such names it is elsewhere."""
+    if called is None:
+        return Part(planes, passing(header), layout.compression, elsewhere=layout.windows.data)
+    stored = {own: name for name, own in called.items() if own != name}
+    return Part({called[name]: planes[name] for name in planes}, passing(header), layout.compression, stored)
+
+
+def _planes(path: Path, layouts: Sequence[Layout]) -> list[dict[str, Plane]]:
+    """The channels of each part, by their names in the file."""
+    try:
+        parts = _decoded(path)
     except MemoryError as error:
         raise FileError(f"{path}: expected an image that fits into memory, got a larger one") from error
+    except Exception as error:  # of whatever type the library's are
+        raise FileError(f"{path}: expected a whole image, got a damaged one ({one_line(error)})") from error
+    found = [{name: part.channels[name].pixels for name in in_usual_order(part.channels)} for part in parts]
+    claimed = [
+        {
+            name: ((layout.windows.data.height, layout.windows.data.width), channel.dtype)
+            for name, channel in layout.channels.items()
+        }
+        for layout in layouts
+    ]
+    # The library leaves out a part whose pixels it cannot read.
+    if [{name: (plane.shape, plane.dtype) for name, plane in planes.items()} for planes in found] != claimed:
+        raise FileError(f"{path}: expected a whole image, got a damaged one (not all of its pixels can be read)")
+    return found
 
 
-def _specs(source: Any) -> list[oiio.ImageSpec]:
-    """What an open file says of each of its parts."""
-    specs: list[oiio.ImageSpec] = []
-    while source.seek_subimage(len(specs), 0):
-        specs.append(oiio.ImageSpec(source.spec()))
-    return specs
+def _decoded(path: Path) -> list[Any]:
+    """The parts of a file as the library reads them."""
+    try:
+        return [*OpenEXR.File(_name(path), separate_channels=True).parts]
+    except UnicodeDecodeError:  # in a text of its header, which passes through as it is
+        with tempfile.TemporaryDirectory() as folder:
+            copy = Path(folder, "copy.exr")
+            copy_in_ascii(path, copy)
+            return [*OpenEXR.File(_name(copy), separate_channels=True).parts]
 
 
-def _check_claims(path: Path, specs: Sequence[oiio.ImageSpec]) -> None:
-    """Raise `FileError` where a file claims more pixels than it can hold, or a picture that no memory can."""
-    claimed, held = sum(spec.image_bytes() for spec in specs), path.stat().st_size
+def _checked(path: Path) -> tuple[list[Attributes], list[Layout]]:
+    """Read the header of a file that can be read, part by part; all that is wrong with it is a FileError."""
+    require(path)
+    if not path.is_file():  # but a folder; or a pipe, which might keep us waiting for ever
+        raise FileError(f"{path}: expected an OpenEXR file, found something that is no file")
+    try:
+        _name(path)
+        headers = read_header(path)
+        layouts = [layout_of(header) for header in headers]
+        _check_claims(layouts, path.stat().st_size)
+        _check_kind(layouts)
+    except FileError:
+        raise
+    except OSError as error:
+        raise unreadable(path, error) from error
+    except UnicodeError as error:
+        raise FileError(f"{path}: expected text in UTF-8 in its header, got another ({error})") from error
+    except ValueError as error:
+        raise FileError(f"{path}: {error}") from error
+    return headers, layouts
+
+
+def _check_claims(layouts: Sequence[Layout], held: int) -> None:
+    """Raise `ValueError` where a file of `held` bytes claims more than it can hold, or a picture that no memory can."""
+    claimed = sum(layout.size for layout in layouts)
     if claimed > max(TRUSTED, MAX_RATIO * held):
-        raise FileError(f"{path}: expected a whole image, got {claimed} bytes of pixels in a file of {held}")
-    windows = _windows(specs[0])
+        raise ValueError(f"expected a whole image, got {claimed} bytes of pixels in a file of {held}")
+    windows = layouts[0].windows
     if windows.display.area > max(MAX_DISPLAY, windows.data.area):
-        raise FileError(f"{path}: expected a display window of at most {MAX_DISPLAY} pixels, got {windows.display}")
+        raise ValueError(f"expected a display window of at most {MAX_DISPLAY} pixels, got {windows.display}")
 
 
-def _check_kind(path: Path, specs: Sequence[oiio.ImageSpec]) -> None:
-    """Raise `FileError` where a file is of a kind that is not read."""
-    views = {view for spec in specs for view in _views(spec)}
-    if any(spec.deep for spec in specs):
-        raise FileError(f"{path}: expected flat pixels, got deep ones; flatten the image first")
-    if len(views) > 1:
-        raise FileError(f"{path}: expected one view, got {', '.join(sorted(views))}; write each to a file of its own")
-    for spec in specs:
-        if _windows(spec) != _windows(specs[0]):
-            raise FileError(
-                f"{path}: expected all parts to have the windows of the first, {_described_windows(specs[0])}, got"
-                f" {_described_windows(spec)} in part {spec.get('oiio:subimagename')}"
-            )
-
-
-def _views(spec: oiio.ImageSpec) -> list[str]:
-    """The views that a part says it has, such as left and right."""
-    listed = spec.get("multiView")
-    named = [spec.get("view"), *(listed if isinstance(listed, tuple) else ())]
-    return [view for view in named if isinstance(view, str) and view]
-
-
-def _described_windows(spec: oiio.ImageSpec) -> str:
-    """Where the pixels of a part lie, in words."""
-    windows = _windows(spec)
-    return f"{windows.data} of {windows.display}"
-
-
-def _has_last_rows(path: Path) -> bool:
-    """Whether the end of a file has been written: of a disk that is full by then OpenImageIO says nothing."""
-    source: Any = oiio.ImageInput.open(_name(path))
-    if source is None:
-        oiio.geterror()  # or it is printed as the process ends
-        return False
-    return all(
-        source.read_scanlines(index, 0, spec.y + spec.height - 1, spec.y + spec.height, 0, 0, 1, "float") is not None
-        for index, spec in enumerate(_specs(source))
-    )
-
-
-def _described(formats: Collection[str]) -> str:
-    """What a file of one of these formats is called in errors."""
-    return " or ".join(FORMATS[name] for name in formats)
+def _check_kind(layouts: Sequence[Layout]) -> None:
+    """Raise `ValueError` where a file is of a kind that is not read."""
+    if any(layout.is_deep for layout in layouts):
+        raise ValueError("expected flat pixels, got deep ones; flatten the image first")
+    sparse = [name for layout in layouts for name, channel in layout.channels.items() if not channel.is_full]
+    if sparse:
+        raise ValueError(f"expected a value for every pixel in each channel, got fewer in {', '.join(sparse)}")
 
 
 def _name(path: Path) -> str:
-    """`path` as OpenImageIO takes it."""
+    """`path` as the library takes it."""
     try:
         return path.as_posix().encode().decode()
     except UnicodeEncodeError as error:

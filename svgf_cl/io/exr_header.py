@@ -1,9 +1,6 @@
-"""The header of an OpenEXR file as bytes: OpenImageIO writes pixels, what else a file says passes through as it is.
+"""The header of an OpenEXR file as bytes: the library writes pixels, what else a file says passes through as it is.
 
-OpenImageIO takes some attributes for orders to its writer, gives others a name or type of its own, adds the date and
-leaves out types it does not know; and where the channels of a part differ in type, it takes them all through float32,
-which cannot hold every 32-bit integer. So integers are written as floats of the same bits, and the header says what
-they are.
+The library knows the types of attributes, takes some for orders, and wants every text in UTF-8; a file may have others.
 
 Source: https://openexr.com/en/latest/OpenEXRFileLayout.html
 """
@@ -13,7 +10,7 @@ from __future__ import annotations
 import mmap
 import shutil
 import struct
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 # An attribute's type and its value as in the file.
@@ -25,25 +22,34 @@ LAYOUT = ("channels", "chunkCount", "compression", "dataWindow", "lineOrder", "t
 # A small picture of what the pixels no longer are.
 STALE = "preview"
 
+MAGIC = b"v/1\1"  # what a file begins with
 START = 8  # bytes before the first attribute: the magic number, the version
 MULTIPART, LONG_NAMES = 0x1000, 0x400  # bits of the version
 SHORT = 31  # bytes of a name that are not long
-UINT = 0
 
 
-def read_attributes(path: Path) -> list[Attributes]:
-    """Read the attributes of each part of a file; all but `LAYOUT` and `STALE`.
+def read_header(path: Path) -> list[Attributes]:
+    """Read the attributes of each part of a file.
 
     Raises
     ------
     OSError
         The file cannot be read.
     ValueError
-        It has no header.
+        It is no OpenEXR file, or its header is damaged.
     """
-    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-        parts, _ = _parsed(content)
-    return [{name: part[name] for name in part if name not in (*LAYOUT, STALE)} for part in parts]
+    with path.open("rb") as file:
+        begins = file.read(len(MAGIC))
+        if begins != MAGIC:
+            raise ValueError(f"expected an OpenEXR file, got one that begins with {begins!r}")
+        with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
+            parts, _ = _parsed(content)
+    return parts
+
+
+def passing(part: Attributes) -> Attributes:
+    """The attributes of a part that pass through: all but `LAYOUT` and `STALE`."""
+    return {name: part[name] for name in part if name not in (*LAYOUT, STALE)}
 
 
 def encoded(value: int | float | str) -> Attribute:
@@ -55,25 +61,39 @@ def encoded(value: int | float | str) -> Attribute:
     return "string", str(value).encode()
 
 
-def copy_with_header(
-    source: Path, target: Path, attributes: Sequence[Mapping[str, Attribute]], integers: Sequence[Collection[str]]
-) -> None:
-    """Copy a whole file of scanlines that OpenImageIO wrote, with a header that says something else.
+def decoded(attribute: Attribute) -> int | float | str | bytes:
+    """Return the number or the text that an attribute holds; what is neither, as bytes."""
+    kind, value = attribute
+    if kind in ("int", "float") and len(value) == 4:
+        number: int | float = struct.unpack("<i" if kind == "int" else "<f", value)[0]
+        return number
+    return value.decode(errors="replace") if kind == "string" else value
+
+
+def copy_with_header(source: Path, target: Path, attributes: Sequence[Mapping[str, Attribute]]) -> None:
+    """Copy a file of scanlines, written in one go from the top, with a header that says something else.
 
     Parameters
     ----------
     source, target : Path
     attributes : sequence of mapping
         Those of each part, in place of all but `LAYOUT`.
-    integers : sequence of collection of str
-        The channels of each part whose floats have the bits of unsigned integers.
+
+    Raises
+    ------
+    ValueError
+        The end of the source is missing.
     """
     with source.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         parts, old_end = _parsed(content)
-        header = _header(content, _merged(parts, attributes, integers))
+        header = _header(content, _merged(parts, attributes))
         # Behind a header is written where each chunk of pixels begins. The first one begins behind these numbers.
-        (first,) = struct.unpack_from("<Q", content, old_end)
-        places = struct.unpack_from(f"<{(first - old_end) // 8}Q", content, old_end)
+        first = _number(content, old_end, "<Q")
+        places = [_number(content, place, "<Q") for place in range(old_end, first, 8)]
+        # A chunk says how many bytes follow; where there are several parts, it says first to which it belongs.
+        last = max(places, default=0) + (8 if _number(content, 4, "<I") & MULTIPART else 4)
+        if last + 4 + _number(content, last, "<i") != len(content):
+            raise ValueError("its end is missing")
         moved = len(header) - old_end
         with target.open("wb") as output:
             output.write(header + struct.pack(f"<{len(places)}Q", *(place + moved for place in places)))
@@ -81,16 +101,30 @@ def copy_with_header(
             shutil.copyfileobj(file, output)
 
 
-def _merged(
-    parts: Sequence[Attributes], attributes: Sequence[Mapping[str, Attribute]], integers: Sequence[Collection[str]]
-) -> list[Attributes]:
-    """What the parts of a new header say: how OpenImageIO wrote the pixels, and all else as wanted."""
-    merged = []
-    for part, own, names in zip(parts, attributes, integers, strict=True):
-        layout = {name: part[name] for name in part if name in LAYOUT}
-        kind, listed = layout["channels"]
-        merged.append({**layout, "channels": (kind, _with_integers(listed, names)), **own})
-    return merged
+def copy_in_ascii(source: Path, target: Path) -> None:
+    """Copy a file with ``?`` for each byte that is not ASCII in the texts of its header."""
+    content = source.read_bytes()
+    parts, end = _parsed(content)
+    header = content[:end]
+    for name, (kind, value) in ((name, part[name]) for part in parts for name in part if part[name][0] == "string"):
+        plain = value.decode("ascii", "replace").encode("ascii", "replace")  # of the same length
+        header = header.replace(_packed({name: (kind, value)})[:-1], _packed({name: (kind, plain)})[:-1])
+    target.write_bytes(header + content[end:])
+
+
+def _number(content: mmap.mmap, place: int, form: str) -> int:
+    """A number of a file whose end may be missing."""
+    try:
+        number: int = struct.unpack_from(form, content, place)[0]
+    except struct.error as error:
+        raise ValueError("its end is missing") from error
+    return number
+
+
+def _merged(parts: Sequence[Attributes], attributes: Sequence[Mapping[str, Attribute]]) -> list[Attributes]:
+    """What the parts of a new header say: how the pixels were written, and all else as wanted."""
+    layouts = ({name: part[name] for name in part if name in LAYOUT} for part in parts)
+    return [{**layout, **own} for layout, own in zip(layouts, attributes, strict=True)]
 
 
 def _header(content: mmap.mmap, parts: Sequence[Attributes]) -> bytes:
@@ -101,7 +135,7 @@ def _header(content: mmap.mmap, parts: Sequence[Attributes]) -> bytes:
     return struct.pack("<II", magic, version) + b"".join(map(_packed, parts)) + b"\0" * bool(version & MULTIPART)
 
 
-def _parsed(content: mmap.mmap) -> tuple[list[Attributes], int]:
+def _parsed(content: mmap.mmap | bytes) -> tuple[list[Attributes], int]:
     """The attributes of each part, and where the header ends."""
     if len(content) < START:
         raise ValueError("expected a whole header, got one that is too short")
@@ -114,12 +148,12 @@ def _parsed(content: mmap.mmap) -> tuple[list[Attributes], int]:
     return parts, position + bool(multipart)
 
 
-def _parsed_part(content: mmap.mmap, position: int) -> tuple[Attributes, int]:
+def _parsed_part(content: mmap.mmap | bytes, position: int) -> tuple[Attributes, int]:
     """The attributes from `position` on, and where they end."""
     part: Attributes = {}
     while content[position : position + 1] != b"\0":
-        name, position = _text(content, position)
-        kind, position = _text(content, position)
+        name, position = text_at(content, position)
+        kind, position = text_at(content, position)
         if not kind:
             raise ValueError("expected a whole header, got an attribute of no type")
         if len(content) < position + 4:
@@ -133,7 +167,7 @@ def _parsed_part(content: mmap.mmap, position: int) -> tuple[Attributes, int]:
     return part, position + 1
 
 
-def _text(content: mmap.mmap | bytes, position: int) -> tuple[str, int]:
+def text_at(content: mmap.mmap | bytes, position: int) -> tuple[str, int]:
     """The text that begins at `position`, and where it ends."""
     end = content.find(b"\0", position)
     if end < 0:
@@ -150,14 +184,3 @@ def _packed(part: Attributes) -> bytes:
         )
         + b"\0"
     )
-
-
-def _with_integers(listed: bytes, integers: Collection[str]) -> bytes:
-    """The list of a part's channels, those in `integers` declared unsigned integers."""
-    changed, position = bytearray(listed), 0
-    while listed[position]:
-        name, position = _text(listed, position)
-        if name in integers:
-            struct.pack_into("<i", changed, position, UINT)
-        position += 16  # the type, a flag, how densely the channel is sampled
-    return bytes(changed)

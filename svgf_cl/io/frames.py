@@ -17,6 +17,7 @@ from svgf_cl.io.image import Plane
 from svgf_cl.io.readers.own import CHANNEL_NAMES, MAX_ID, OWN
 from svgf_cl.io.reading import ReadAs, Reading
 
+ALPHA_NAME = "A"  # of color's fourth channel; written with a frame, not read into one, as files keep what is not read
 MADE_FROM = "svgf_cl:made_from"  # the attribute that tells what a frame was made from
 
 
@@ -61,7 +62,8 @@ def channels_of(path: Path, frame: Frame) -> dict[str, Plane]:
         if field == "id" and value.max(initial=0) > MAX_ID:
             raise FileError(f"{path}: expected ids up to {MAX_ID} (whole numbers in float32), got {value.max()}")
         components = np.asarray(value, np.float32).reshape(*frame.shape, -1)
-        planes |= zip(CHANNEL_NAMES[field], np.moveaxis(components, -1, 0), strict=False)
+        names = (*CHANNEL_NAMES[field], *([ALPHA_NAME] if field == "color" else []))
+        planes |= zip(names, np.moveaxis(components, -1, 0), strict=False)
     return planes
 
 

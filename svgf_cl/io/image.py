@@ -12,7 +12,14 @@ import numpy.typing as npt
 from svgf_cl.io.exr_header import Attributes
 from svgf_cl.io.window import Window
 
-Plane = npt.NDArray[np.float32] | npt.NDArray[np.uint32]
+Plane = npt.NDArray[np.float16] | npt.NDArray[np.float32] | npt.NDArray[np.uint32]
+
+# By their numbers in a file.
+COMPRESSIONS = (
+    *("none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"),
+    *("htj2k256", "htj2k32"),
+)
+LOSSLESS = frozenset({"none", "rle", "zips", "zip", "piz", "htj2k256", "htj2k32"})
 
 
 @dataclass(frozen=True)
@@ -30,25 +37,37 @@ class Part:
 
     Parameters
     ----------
-    planes : dict of str to (H, W) float32 or uint32
-        The channels. No two parts of an image have one of the same name.
+    planes : dict of str to (H, W) float16, float32 or uint32
+        The channels, in their types in the file. No two parts that are read have one of the same name.
     attributes : dict of str to Attribute
         All that the header says and that is not how pixels are stored.
-    halves : frozenset of str
-        The channels that are 16-bit floats in the file.
+    compression : str
+        One of `COMPRESSIONS`.
     stored : mapping of str to str
         Channels whose name in the file is another, as other parts have that one too.
+    elsewhere : Window, optional
+        The data window of a part that is of another view than the image, or lies in another place: it passes through,
+        but its channels are not the image's.
     """
 
     planes: Mapping[str, Plane]
     attributes: Attributes
-    halves: frozenset[str] = frozenset()
+    compression: str = "zip"
     stored: Mapping[str, str] = field(default_factory=dict)
+    elsewhere: Window | None = None
+
+    @property
+    def lossless_compression(self) -> str:
+        """How the part is written: as it was where that keeps every bit, else by zip."""
+        # PXR24 cuts 32-bit floats to 24 bits, and keeps all else.
+        keeps = self.compression == "pxr24" and all(plane.dtype != np.float32 for plane in self.planes.values())
+        return self.compression if keeps or self.compression in LOSSLESS else "zip"
 
     def same_as(self, other: Part) -> bool:
-        """Whether the other part holds the same, bit by bit."""
+        """Whether the other part holds the same, bit by bit, and is written in the same way."""
         return (
-            (self.attributes, self.halves) == (other.attributes, other.halves)
+            (self.attributes, self.elsewhere) == (other.attributes, other.elsewhere)
+            and self.lossless_compression == other.lossless_compression
             and self.planes.keys() == other.planes.keys()
             and all(
                 plane.dtype == other.planes[name].dtype and plane.tobytes() == other.planes[name].tobytes()
@@ -59,15 +78,15 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Image:
-    """All of a file."""
+    """All of a file; the windows are those of its first part."""
 
     windows: Windows
     parts: tuple[Part, ...]
 
     @property
     def planes(self) -> dict[str, Plane]:
-        """Every channel, of whatever part."""
-        return {name: plane for part in self.parts for name, plane in part.planes.items()}
+        """Every channel of the parts that are not elsewhere."""
+        return {name: plane for part in self.parts if not part.elsewhere for name, plane in part.planes.items()}
 
     @property
     def chromaticities(self) -> tuple[float, ...] | None:
@@ -75,20 +94,28 @@ class Image:
         kind, value = self.parts[0].attributes.get("chromaticities", ("", b""))
         return struct.unpack("<8f", value) if kind == "chromaticities" and len(value) == 32 else None
 
-    def with_planes(self, planes: Mapping[str, npt.NDArray[np.float32]]) -> Image:
-        """The same with these 32-bit floats in place of the channels of their names; new ones go to the first part."""
-        parts = []
+    def with_planes(self, planes: Mapping[str, Plane], beside: str | None = None) -> Image:
+        """The same with these channels in place of those of their names.
+
+        New ones go to the part that has the channel `beside`, the first part where none is given.
+        """
         new = planes.keys() - self.planes.keys()
-        for index, part in enumerate(self.parts):
-            own = {name: plane for name, plane in planes.items() if name in part.planes or (not index and name in new)}
-            parts.append(replace(part, planes={**part.planes, **own}, halves=part.halves - own.keys()))
+        home = self._part_of(beside)
+        parts = []
+        for part in self.parts:
+            replaced = set() if part.elsewhere else planes.keys() & part.planes.keys()
+            own = {name: plane for name, plane in planes.items() if name in replaced or (part is home and name in new)}
+            parts.append(replace(part, planes={**part.planes, **own}))
         return replace(self, parts=tuple(parts))
 
-    def with_planes_alone(self, planes: Mapping[str, npt.NDArray[np.float32]]) -> Image:
+    def with_planes_alone(self, planes: Mapping[str, Plane]) -> Image:
         """The same with no other channels than these, in one part: the one that had the first of them."""
-        first = next(iter(planes))
-        part = next((part for part in self.parts if first in part.planes), self.parts[0])
-        return replace(self, parts=(Part(dict(planes), part.attributes),))
+        home = self._part_of(next(iter(planes)))
+        return replace(self, parts=(Part(dict(planes), home.attributes, home.compression),))
+
+    def _part_of(self, channel: str | None) -> Part:
+        """The part that has a channel; the first one if none has."""
+        return next((part for part in self.parts if channel in part.planes and not part.elsewhere), self.parts[0])
 
     def without(self, attribute: str) -> Image:
         """The same without an attribute."""

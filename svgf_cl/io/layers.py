@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 from svgf_cl.frame import CHANNELS
 
 RGB = ("R", "G", "B")
 # What tells nothing without a layer: that of a part is called like the part.
-LETTERS = frozenset("RGBAXYZ")
+ORDER = "RGBAXYZ"
+LETTERS = frozenset(ORDER)
 # How else renderers call the components of a layer.
 COMPONENTS = {"r": 0, "red": 0, "g": 1, "green": 1, "b": 2, "blue": 2}
 # How renderers call the layer that is the picture, whatever comes before in names such as ViewLayer.Combined.
@@ -55,6 +56,16 @@ def colour_layers(names: Collection[str]) -> dict[str, tuple[str, ...]]:
 def is_picture_name(name: str) -> bool:
     """Whether a layer or part of that name is a picture."""
     return _last(name) in PICTURES
+
+
+def in_usual_order(names: Iterable[str]) -> list[str]:
+    """Sort channels by layer, and those of a layer as people name them: ``R G B A``, ``X Y Z``, then all others."""
+
+    def place(name: str) -> tuple[str, int, str]:
+        layer, _, component = name.rpartition(".")
+        return layer, ORDER.find(component) if component in LETTERS else len(ORDER), component
+
+    return sorted(names, key=place)
 
 
 def unique_names(parts: Sequence[tuple[str, Collection[str]]]) -> list[dict[str, str]]:

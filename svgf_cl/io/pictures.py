@@ -23,7 +23,9 @@ def picture_file(picture: Picture) -> Image:
     return new_image(channels(picture), {})
 
 
-def denoised_file(planes: Mapping[str, Picture], source: Image, *, plain: bool = False) -> Image:
+def denoised_file(
+    planes: Mapping[str, Picture], source: Image, *, beside: str | None = None, plain: bool = False
+) -> Image:
     """Make the file of what was denoised of a frame.
 
     Parameters
@@ -32,11 +34,13 @@ def denoised_file(planes: Mapping[str, Picture], source: Image, *, plain: bool =
         Channels that were made.
     source : Image
         The file of the frame, of the same data window: what it says, and its other channels, go along.
+    beside : str, optional
+        The channel to whose part of the file those go that it does not have yet; by default to the first part.
     plain : bool
         No channels of the source.
     """
     kept = source.without(MADE_FROM)
-    return kept.with_planes_alone(planes) if plain else kept.with_planes(planes)
+    return kept.with_planes_alone(planes) if plain else kept.with_planes(planes, beside)
 
 
 def channels(picture: Picture, names: Sequence[str] = RGB) -> dict[str, Picture]:

@@ -18,8 +18,8 @@ from svgf_cl.io.look_alikes import advice, grouped
 from svgf_cl.io.readers import reader_called, reader_of
 from svgf_cl.io.readers.conversions import Array, without_edges
 from svgf_cl.io.readers.own import CHANNEL_NAMES, OWN, needed
-from svgf_cl.io.readers.passes import by_view_layer, called, plain
-from svgf_cl.io.readers.reader import HELPERS, Found, Pass, Reader, Source, Values
+from svgf_cl.io.readers.passes import by_view_layer, called, place, plain
+from svgf_cl.io.readers.reader import HELPERS, Found, Light, Pass, Reader, Source, Values
 
 # Components that a field has at least.
 SIZES = {field: max(1, min(sizes)) for field, sizes in CHANNELS.items()} | HELPERS
@@ -71,13 +71,18 @@ class LightPass:
         Its red, green and blue.
     factor : tuple of str
         Channels of the pass that it is to be multiplied by; none where it is light as it is.
-    filtered : bool
-        Whether it is noisy.
+    kind : readers.reader.Light
+        What is known of it.
     """
 
     channels: tuple[str, ...]
     factor: tuple[str, ...]
-    filtered: bool
+    kind: Light
+
+    @property
+    def filtered(self) -> bool:
+        """Whether it is noisy."""
+        return self.kind.filtered
 
 
 class Reading:
@@ -135,7 +140,7 @@ class Reading:
             values = self.reader.complete(values, camera)
         values |= derived(values, camera, previous, still=self.how.still_camera)
         if "emission" not in values and (shining := [light for light in self.lights if not light.filtered]):
-            values["emission"] = sum_of(stacked(path, planes, light.channels) for light in shining)
+            values["emission"] = sum_of(self.radiance(path, planes, light) for light in shining)
         missing = [name for name in REQUIRED if name not in values]
         if not values.keys() & {"color", "direct", "indirect"}:
             missing = ["color", *missing]
@@ -188,8 +193,22 @@ class Reading:
             if light.factor and len(factor) < 3:
                 continue
             there = [passes[name] for name in map(plain, light.names) if len(passes.get(name, ())) >= 3]
-            found += [LightPass(channels[:3], factor[:3], light.filtered) for channels in there]
+            found += [LightPass(channels[:3], factor[:3], light) for channels in there]
         return tuple(found) if any(light.filtered for light in found) else ()
+
+    def radiance(self, path: Path, planes: Mapping[str, Array], light: LightPass) -> npt.NDArray[np.float32]:
+        """A light pass as far as it is in the picture, (H, W, 3), before its factor; errors as of `frame`."""
+        radiance = stacked(path, planes, light.channels)
+        if light.kind.is_background and self.alpha in planes:
+            radiance *= np.asarray(planes[self.alpha] >= 1.0)[..., None]
+        return radiance
+
+    @cached_property
+    def alpha(self) -> str:
+        """The channel of the picture's alpha; empty where there is none."""
+        layer, name, _ = place(self.picture[0])
+        channels = self._layers.get(layer, {}).get(name, ())
+        return channels[3] if len(channels) > 3 else ""
 
     @property
     def _found(self) -> Found:
@@ -244,17 +263,17 @@ class Reading:
         return FileError("; ".join([f"{path}: expected {expected}, found {grouped(planes)}", *dict.fromkeys(hints)]))
 
 
-def single_precision(plane: Array) -> Array:
-    """A plane of floats as float32, one of integers as it is."""
-    return plane if plane.dtype.kind in "ui" else np.asarray(plane, np.float32)
-
-
 def stacked(path: Path, planes: Mapping[str, Array], channels: Sequence[str]) -> npt.NDArray[np.float32]:
     """The picture (H, W, 3) of three channels; `FileError` where the file lacks one."""
     lost = [channel for channel in channels if channel not in planes]
     if lost:
-        raise FileError(f"{path}: expected the light pass {' '.join(channels)} as in the first frame, found none")
+        raise FileError(f"{path}: expected the light pass {grouped(channels)} as in the first frame, found none")
     return np.stack([np.asarray(planes[channel], np.float32) for channel in channels], axis=-1)
+
+
+def single_precision(plane: Array) -> Array:
+    """A plane of floats as float32, one of integers as it is."""
+    return plane if plane.dtype.kind in "ui" else np.asarray(plane, np.float32)
 
 
 def sum_of(pictures: Iterable[Array]) -> npt.NDArray[np.float32]:

@@ -16,8 +16,7 @@ from svgf_cl.camera import Camera, motion_from_cameras
 from svgf_cl.errors import ArgumentError, FileError
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.cameras import camera_of_header, cameras_beside, read_cameras
-from svgf_cl.io.exr import MAX_DISPLAY, read_image, read_windows
-from svgf_cl.io.exr_header import read_attributes
+from svgf_cl.io.exr import MAX_DISPLAY, read_attributes, read_image, read_windows
 from svgf_cl.io.image import Image, Plane, Windows
 from svgf_cl.io.reading import LightPass, ReadAs, Reading, stacked
 from svgf_cl.io.separate import SeparateFiles
@@ -42,14 +41,20 @@ class Light:
         What the pass holds.
     factor : (H, W, 3) float32, optional
         What it is to be multiplied by to be a part of the picture; 1 where there is none.
+    factor_channels : tuple of str
+        The channels that the factor is from.
     filtered : bool
         Whether it is noisy.
+    reflects : bool
+        Whether it is seen in the surface, as in a mirror, so that the albedo of what is seen is in it.
     """
 
     channels: tuple[str, ...]
     radiance: Picture
-    factor: Picture | None
-    filtered: bool
+    factor: Picture | None = None
+    factor_channels: tuple[str, ...] = ()
+    filtered: bool = True
+    reflects: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,20 +153,18 @@ class Shot(Sequence[Frame]):
         lights = tuple(self._light(path, planes, light, own) for light in self.reading.lights)
         return ShotFrame(path, image, moved(frame, own, self.window), lights)
 
-    def motion_to_next(self, index: int, frame: Frame) -> Picture | None:
+    def motion_to_next(self, source: ShotFrame) -> Picture | None:
         """The motion of a frame to the next one, (H, W, 2 or 3), where its file or the cameras tell it."""
-        path = self.paths[index]
-        if "motion_to_next" in self.reading.sources:
-            image = read_image(path)
-            motion = self.reading.motion_to_next(path, image.planes)
-            return None if motion is None else placed(motion, image.windows.data, self.window, 0.0)
+        path, image = source.path, source.image
+        if (motion := self.reading.motion_to_next(path, image.planes)) is not None:
+            return placed(motion, image.windows.data, self.window, 0.0)
         if "motion" in self.reading.sources:
             return None
         windows = Windows(self.window, self._display)
         camera, following = (self._shifted(self._camera(number_of(path) + step), windows) for step in (0, 1))
         if camera is None or following is None:
             return None
-        return motion_from_cameras(camera, following, depth=frame.depth)
+        return motion_from_cameras(camera, following, depth=source.frame.depth)
 
     def _cameras_at(self, index: int, windows: Windows) -> tuple[Camera | None, Camera | None]:
         """The cameras of a frame and of the one before, where fields are computed from them."""
@@ -182,7 +185,7 @@ class Shot(Sequence[Frame]):
     def _camera_in(self, path: Path) -> Camera | None:
         """The camera in the header of a frame's file, if there is one."""
         try:
-            return camera_of_header(read_attributes(path)[0], (self._display.height, self._display.width))
+            return camera_of_header(read_attributes(path), (self._display.height, self._display.width))
         except ArgumentError as error:
             raise FileError(f"{path}: {error}; give the camera in cameras.json or with --cameras FILE") from error
 
@@ -204,9 +207,9 @@ class Shot(Sequence[Frame]):
 
     def _light(self, path: Path, planes: Mapping[str, Plane], light: LightPass, own: Window) -> Light:
         """A light of a file, on the window of the shot."""
-        radiance = placed(stacked(path, planes, light.channels), own, self.window, 0.0)
+        radiance = placed(self.reading.radiance(path, planes, light), own, self.window, 0.0)
         factor = placed(stacked(path, planes, light.factor), own, self.window, 0.0) if light.factor else None
-        return Light(light.channels, radiance, factor, light.filtered)
+        return Light(light.channels, radiance, factor, light.factor, light.filtered, light.kind.reflects)
 
     def _check_fields(self, path: Path, frame: Frame) -> None:
         """Raise `FileError` where a frame has another set of fields than the first one."""

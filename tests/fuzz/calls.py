@@ -77,8 +77,10 @@ def held_somehow(draw: st.DrawFn, frame: Frame, queue: cl.CommandQueue, *, on_de
 
 
 def to_device(draw: st.DrawFn, queue: cl.CommandQueue, value: np.ndarray) -> cl_array.Array:
-    """An Array of this queue, of another one of its context, or out of a memory pool."""
-    kind = draw(st.sampled_from(("own", "other queue", "pool")))
+    """An Array of this queue, of another one of its context, out of a memory pool, or with strides or an offset."""
+    kind = draw(st.sampled_from(("own", "other queue", "pool", *arrays.STRIDED)))
+    if callable(kind):
+        return kind(queue, value)
     if kind == "pool":
         pool = cl_tools.MemoryPool(cl_tools.ImmediateAllocator(queue))
         return cl_array.to_device(queue, value, allocator=pool)
@@ -89,9 +91,8 @@ def plain(frame: Frame) -> Frame:
     """What the denoiser is to read: the same values as plain numpy arrays of the kernels' type."""
 
     def change(name: str, value: Any) -> np.ndarray:
-        host = value.get() if isinstance(value, cl_array.Array) else value
         with np.errstate(over="ignore", invalid="ignore"):
-            return np.array(host, np.uint32 if name == "id" else np.float32, order="C")
+            return np.array(arrays.fetched(value), np.uint32 if name == "id" else np.float32, order="C")
 
     return mapped(frame, change)
 
@@ -134,14 +135,6 @@ def of_another_type(queue: cl.CommandQueue, value: np.ndarray) -> cl_array.Array
     return cl_array.zeros(queue, value.shape, np.float64)
 
 
-def with_offset(queue: cl.CommandQueue, value: np.ndarray) -> cl_array.Array:
-    return cl_array.to_device(queue, np.concatenate([value[:1], value]))[1:]
-
-
-def in_columns(queue: cl.CommandQueue, value: np.ndarray) -> cl_array.Array:
-    return cl_array.to_device(queue, np.asfortranarray(value))
-
-
 def without_the_last_row(queue: cl.CommandQueue, value: np.ndarray) -> cl_array.Array:
     return cl_array.to_device(queue, value[:-1].copy())
 
@@ -157,6 +150,16 @@ def in_too_small_a_buffer(queue: cl.CommandQueue, value: np.ndarray) -> cl_array
     return cl_array.Array(queue, value.shape, value.dtype, data=data)
 
 
+def off_the_grid(queue: cl.CommandQueue, value: np.ndarray) -> cl_array.Array:
+    data = cl.Buffer(queue.context, cl.mem_flags.READ_WRITE, value.nbytes + 2)
+    return cl_array.Array(queue, value.shape, value.dtype, data=data, offset=2)
+
+
+def beyond_its_buffer(queue: cl.CommandQueue, value: np.ndarray) -> cl_array.Array:
+    strides = (-value.strides[0], *value.strides[1:])
+    return cl_array.Array(queue, value.shape, value.dtype, data=cl_array.to_device(queue, value).data, strides=strides)
+
+
 def that_failed(queue: cl.CommandQueue, value: np.ndarray) -> cl_array.Array:
     array = cl_array.to_device(queue, value)
     array.add_event(failed(queue))
@@ -165,8 +168,8 @@ def that_failed(queue: cl.CommandQueue, value: np.ndarray) -> cl_array.Array:
 
 WRONG_DEVICE_ARRAYS = (
     of_another_type,
-    with_offset,
-    in_columns,
+    off_the_grid,
+    beyond_its_buffer,
     without_the_last_row,
     in_another_context,
     in_too_small_a_buffer,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pyopencl as cl
-import pyopencl.array as cl_array
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -15,15 +14,12 @@ from svgf_cl.filters import FILTERS
 from svgf_cl.filters.filter import Filter
 from svgf_cl.frame import Shape
 from svgf_cl.settings import Choice, Domain, Range, Value, domains
+from tests.arrays import fetched
 from tests.frames import FULL, TINY
 from tests.fuzz import calls
 from tests.fuzz.effort import effort
 
 QUICKEST = Eaw(iterations=1)  # to compile, where the filter does not matter
-
-
-def fetched(out: np.ndarray | cl_array.Array) -> np.ndarray:
-    return out.get() if isinstance(out, cl_array.Array) else out
 
 
 def assert_is_a_picture(out: np.ndarray, shape: Shape) -> None:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from svgf_cl import ArgumentError, Camera, motion_from_cameras
 from svgf_cl.camera import Axes
-from svgf_cl.io.exr_header import read_attributes
+from svgf_cl.io.exr import read_attributes
 from tests.camera_headers import HABITS, header
 
 SHAPE = (30, 40)
@@ -257,7 +257,7 @@ def test_the_header_of_a_file_of_mantra_is_understood() -> None:
 
 @pytest.mark.skipif(not ARNOLD.exists(), reason=f"{ARNOLD} is not here")
 def test_the_header_of_a_file_of_arnold_is_understood() -> None:
-    attributes = read_attributes(ARNOLD)[0]
+    attributes = read_attributes(ARNOLD)
     matrices = [np.frombuffer(attributes[name][1], "<f4").reshape(4, 4) for name in ("worldToCamera", "worldToNDC")]
     camera = Camera.from_matrices(*matrices, (128, 128))
     (fov,) = np.frombuffer(attributes["CameraFov"][1], "<f4")

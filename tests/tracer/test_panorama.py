@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 import struct
 from pathlib import Path
 
@@ -63,6 +64,10 @@ def test_other_files_are_refused(tmp_path: Path) -> None:
     (tmp_path / "a.png").write_bytes(png(np.zeros((2, 2, 3))))
     with pytest.raises(SceneError, match=r"expected a Radiance HDR file or an OpenEXR file, got the format png"):
         load_environment(tmp_path / "a.png")
+    os.mkfifo(tmp_path / "pipe.hdr")
+    for name in (".", "pipe.hdr"):
+        with pytest.raises(SceneError, match=r"found something that is no file"):
+            load_environment(tmp_path / name)
     (tmp_path / "a.exr").write_bytes(b"nothing of the kind")
     with pytest.raises(SceneError, match=r"a\.exr: expected a Radiance HDR file"):
         load_environment(tmp_path / "a.exr")

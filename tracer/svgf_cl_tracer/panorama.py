@@ -10,16 +10,15 @@ import numpy as np
 import numpy.typing as npt
 
 from svgf_cl.errors import FileError
-from svgf_cl.io.exr import read_image
+from svgf_cl.io.exr import is_exr, read_image
 from svgf_cl.io.layers import picture_channels
 from svgf_cl.io.window import placed
 
 from .errors import SceneError
 from .primaries import to_rec709
+from .radiance import read_radiance
 from .sky import Environment
 from .vectors import Float32, Float64
-
-FORMATS = ("hdr", "openexr")  # linear ones
 
 # 8192 x 4096: 400 MB in memory.
 MAX_PIXELS = 2**25
@@ -45,7 +44,7 @@ def load_environment(path: str | PathLike[str], to_world: Float64 | None = None)
     """
     path = Path(path)
     try:
-        image = read_image(path, FORMATS)
+        image = read_image(path) if is_exr(path) else read_radiance(path)
         windows, planes = image.windows, image.planes
         if windows.display.area > MAX_PIXELS:
             raise SceneError(f"expected at most {MAX_PIXELS} pixels, got {windows.display}")

@@ -1,8 +1,9 @@
 """Blender's OpenEXR MultiLayer files, of Cycles: ``ViewLayer.Combined.R`` and so on.
 
-Conventions, found numerically on frames of Blender 4.2: Vector holds the previous position minus the current one in its
-X and Y, and the current one minus the next in Z and W, in pixels, y up. Depth is the camera's z, 1e10 where nothing
-was hit. Normal is in world space. Denoising Albedo of a sharp mirror is that of what it reflects.
+Conventions, found numerically on frames of Blender 4.2 and 5.0: Vector holds the previous position minus the current
+one in its X and Y, and the current one minus the next in Z and W, in pixels, y up. Depth is the camera's z of the first
+sample, 1e10 where nothing was hit. Normal is in world space, a mean over samples in which a miss counts as 0. Denoising
+Albedo of a sharp mirror is that of what it reflects.
 """
 
 from __future__ import annotations
@@ -48,16 +49,18 @@ BLENDER = Reader(
         " Blender does not write it",
     },
     lights=(
-        Light(("DiffDir", "DiffInd"), "DiffCol"),
-        Light(("GlossDir", "GlossInd"), "GlossCol"),
-        Light(("TransDir", "TransInd"), "TransCol"),
-        Light(("VolumeDir", "VolumeInd")),
-        Light(("Emit", "Env"), filtered=False),
-        # Since Blender 5:
+        # Those of Blender 5, then those of earlier versions.
         Light(("Diffuse Direct", "Diffuse Indirect"), "Diffuse Color"),
-        Light(("Glossy Direct", "Glossy Indirect"), "Glossy Color"),
-        Light(("Transmission Direct", "Transmission Indirect"), "Transmission Color"),
+        Light(("Glossy Direct", "Glossy Indirect"), "Glossy Color", reflects=True),
+        Light(("Transmission Direct", "Transmission Indirect"), "Transmission Color", reflects=True),
         Light(("Volume Direct", "Volume Indirect")),
-        Light(("Emission", "Environment"), filtered=False),
+        Light(("Emission",), filtered=False),
+        Light(("Environment",), filtered=False, is_background=True),
+        Light(("DiffDir", "DiffInd"), "DiffCol"),
+        Light(("GlossDir", "GlossInd"), "GlossCol", reflects=True),
+        Light(("TransDir", "TransInd"), "TransCol", reflects=True),
+        Light(("VolumeDir", "VolumeInd")),
+        Light(("Emit",), filtered=False),
+        Light(("Env",), filtered=False, is_background=True),
     ),
 )

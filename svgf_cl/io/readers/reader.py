@@ -138,11 +138,17 @@ class Light:
         The pass that each of them has to be multiplied by to be light: an albedo that is free of noise.
     filtered : bool
         Whether it is noisy; else it passes through, as light that the camera sees directly does.
+    reflects : bool
+        Whether it is seen in the surface, as in a mirror, and the albedo of what is seen there is still in it.
+    is_background : bool
+        Whether it is behind everything: it is no part of a picture with a transparent film, where alpha is below 1.
     """
 
     names: tuple[str, ...]
     factor: str | None = None
     filtered: bool = True
+    reflects: bool = False
+    is_background: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

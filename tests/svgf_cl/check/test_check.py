@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from svgf_cl.check.check import Check
 from svgf_cl.check.finding import EXPECTED, Finding, Unknown
 from svgf_cl.frame import CARRIED, CHANNELS
 from svgf_cl.io.synthetic import room_frames
+from tests.arrays import STRIDED
 from tests.frames import TINY, bumpy, noise, only, wall
 
 SHAPE = (180, 320)
@@ -150,3 +152,15 @@ def test_tiny_frames_raise_no_alarm(shape: tuple[int, int]) -> None:
 def test_frames_without_any_surface_raise_no_alarm() -> None:
     sky = wall(color=noise(), normal=0.0, depth=np.inf, albedo=1.0, id=0)
     assert not check_sequence([sky] * 2).findings
+
+
+@pytest.mark.parametrize("form", STRIDED)
+def test_how_arrays_lie_on_a_device_does_not_matter(form: Callable, room: list[Frame], queue: cl.CommandQueue) -> None:
+    wrong = replace(room[1], motion=room[1].motion * np.float32([-1, -1, 1]))
+    fields = {name: form(queue, value) for name, value in wrong.present().items()}
+    assert str(check_frame(Frame(**fields), room[0])) == str(check_frame(wrong, room[0]))
+
+
+def test_alpha_is_not_looked_at(room: list[Frame]) -> None:
+    rgba = np.concatenate([room[0].color, np.full((*SHAPE, 1), np.nan, np.float32)], axis=-1)
+    assert str(check_frame(replace(room[0], color=rgba))) == str(check_frame(room[0]))

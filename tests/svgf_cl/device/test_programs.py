@@ -39,6 +39,11 @@ def test_the_header_comes_first():
     assert "#include" not in source
 
 
+@pytest.mark.parametrize("name", programs.WITHOUT_HEADERS)
+def test_what_needs_no_header_is_compiled_alone(name):
+    assert programs.source(name).startswith(f'#line 1 "{name}.cl"\n')
+
+
 @pytest.mark.parametrize(
     ("value", "text"),
     [

@@ -15,8 +15,7 @@ from hypothesis import strategies as st
 from svgf_cl import ArgumentError, Camera, motion_from_cameras
 from svgf_cl.errors import FileError
 from svgf_cl.io.cameras import NAME, camera_of_header, read_cameras
-from svgf_cl.io.exr import read_channels
-from svgf_cl.io.exr_header import read_attributes
+from svgf_cl.io.exr import read_attributes, read_channels
 
 SAMPLES = Path(__file__).parents[4] / "shared" / "samples"
 MITSUBA = SAMPLES / "mitsuba"
@@ -214,7 +213,7 @@ def test_what_is_no_matrix_is_refused() -> None:
 
 @pytest.mark.skipif(not ARNOLD.exists(), reason=f"{ARNOLD} is not here")
 def test_a_file_of_arnold_has_a_camera() -> None:
-    camera = camera_of_header(read_attributes(ARNOLD)[0], (128, 128))
+    camera = camera_of_header(read_attributes(ARNOLD), (128, 128))
     assert camera is not None
     assert camera.center == pytest.approx((63.5, 63.5), abs=1e-3)
 

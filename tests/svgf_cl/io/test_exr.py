@@ -53,8 +53,8 @@ def test_halves_and_integers_are_read_as_the_numbers_they_are(tmp_path: Path) ->
     assert output.write_image(values)
     output.close()
     found = read_channels(path)
-    np.testing.assert_array_equal(found["R"], np.full((3, 4), np.float16(0.1), np.float32))
-    np.testing.assert_array_equal(found["id"], np.arange(12).reshape(3, 4) * 1000)
+    np.testing.assert_array_equal(found["R"], np.full((3, 4), 0.1, np.float16), strict=True)
+    np.testing.assert_array_equal(found["id"], np.arange(12, dtype=np.uint32).reshape(3, 4) * 1000, strict=True)
 
 
 @pytest.mark.parametrize("name", ["a b", "ü 日本", "new\nline", "-dash", "q?x=1", "f.####", "%04d", "semi;colon", " "])
@@ -87,7 +87,10 @@ def test_a_name_that_is_no_text_is_refused(tmp_path: Path) -> None:
         (lambda path: path.symlink_to(path), "cannot be read \\(Too many levels of symbolic links\\)"),
         (lambda path: path.touch(), "expected an OpenEXR file, got"),
         (lambda path: path.write_text("hello"), "expected an OpenEXR file, got"),
-        (lambda path: oiio.ImageBuf(oiio.ImageSpec(2, 2, 3, "uint8")).write(str(path), fileformat="png"), "format png"),
+        (
+            lambda path: oiio.ImageBuf(oiio.ImageSpec(2, 2, 3, "uint8")).write(str(path), fileformat="png"),
+            "begins with b'.x89PNG'",
+        ),
     ],
 )
 def test_what_is_no_exr_file_is_refused(make: Callable[[Path], object], words: str, tmp_path: Path) -> None:
@@ -194,18 +197,20 @@ for path in sorted(Path(sys.argv[1]).iterdir()):
         read_channels(path)
     except FileError as error:
         said[path.name] = str(error)
-print(json.dumps([said, peak() - before]))
+Path(sys.argv[2]).write_text(json.dumps([said, peak() - before]))  # OpenEXR prints what is wrong, too
 """
 
 
 def test_no_memory_is_taken_for_what_a_header_claims(tmp_path: Path) -> None:
+    folder, answer = tmp_path / "huge", tmp_path / "answer.json"
+    folder.mkdir()
     for name, content in HUGE.items():
-        (tmp_path / name).with_suffix(".exr").write_bytes(content)
-    child = subprocess.run([sys.executable, "-c", READ_ALL, tmp_path], capture_output=True, text=True, check=True)
-    said, growth = json.loads(child.stdout)
+        (folder / name).with_suffix(".exr").write_bytes(content)
+    subprocess.run([sys.executable, "-c", READ_ALL, folder, answer], capture_output=True, check=True)
+    said, growth = json.loads(answer.read_text())
     assert said.keys() == {f"{name}.exr" for name in HUGE}
     for name, message in said.items():
-        assert message.startswith(f"{tmp_path / name}: expected"), message
+        assert message.startswith(f"{folder / name}: expected"), message
         assert "\n" not in message
     assert growth < MAX_GROWTH
 
@@ -225,12 +230,10 @@ def test_what_compresses_best_is_read(tmp_path: Path) -> None:
 
 
 def test_too_little_memory_names_the_file(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(*_: object) -> None:
+    def full(*_: object, **__: object) -> None:
         raise MemoryError("std::bad_alloc")
 
-    monkeypatch.setattr(exr.np, "ascontiguousarray", full)
-    monkeypatch.setattr(exr, "_described", full)
-    path.write_text("no image")
+    monkeypatch.setattr(exr.OpenEXR, "File", full)
     with pytest.raises(FileError, match=r"a\.exr: expected an image that fits into memory"):
         read_channels(path)
 

@@ -60,6 +60,14 @@ def test_a_frame_comes_back_bit_for_bit(frame: Frame) -> None:
         np.testing.assert_array_equal(back[name], value, strict=True)
 
 
+def test_alpha_is_written(tmp_path: Path) -> None:
+    path = tmp_path / "frame.0000.exr"
+    rgba = np.random.default_rng(0).random((3, 4, 4), np.float32)
+    write_frame(path, plain_frame(color=rgba))
+    np.testing.assert_array_equal(read_channels(path)["A"], rgba[..., 3])
+    np.testing.assert_array_equal(read_frame(path).color, rgba[..., :3])
+
+
 def test_a_great_id_is_refused_and_leaves_no_file(tmp_path: Path) -> None:
     with pytest.raises(FileError, match="expected ids up to 16777216"):
         write_frame(tmp_path / "frame.0000.exr", plain_frame(id=np.full((3, 4), MAX_ID + 1, np.uint32)))

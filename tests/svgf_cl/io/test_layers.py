@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from svgf_cl.io.layers import picture_channels
+from svgf_cl.io.layers import in_usual_order, picture_channels
 
 
 @pytest.mark.parametrize(
@@ -41,3 +41,8 @@ def test_the_picture_is_found_by_name(names: str, picture: str) -> None:
 def test_no_picture_or_several_are_refused_with_what_was_found(names: str) -> None:
     with pytest.raises(ValueError, match=f"expected channels R G B, .*; found {names}$"):
         picture_channels(names.split())
+
+
+def test_channels_are_named_as_people_do() -> None:
+    names = ["R", "G", "B", "A", "Z", "id", "a.R", "a.G", "a.X", "a.Y", "a.u", "n.X", "n.Y", "n.Z"]
+    assert in_usual_order(sorted(names)) == names

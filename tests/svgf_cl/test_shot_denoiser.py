@@ -13,7 +13,8 @@ from svgf_cl import Denoiser, Frame
 from svgf_cl.filters import DEFAULT
 from svgf_cl.io.shot import Light
 from svgf_cl.io.synthetic import room_frame
-from svgf_cl.lights import Denoised, LightsDenoiser, single
+from svgf_cl.lights import Denoised, single
+from svgf_cl.shot_denoiser import Method, ShotDenoiser
 
 SHAPE = (24, 40)
 FRAMES = 3
@@ -43,14 +44,19 @@ def diffuse(number: int, **changes: object) -> list[Light]:
     lamp = np.zeros((*SHAPE, 3), np.float32)
     lamp[2:4, 5:9] = 30.0
     return [
-        Light(PASSES["direct"], noise(number), factor, filtered=True),
-        Light(PASSES["indirect"], noise(100 + number, 0.3), factor, filtered=True),
+        Light(PASSES["direct"], noise(number), factor, ("a.R", "a.G", "a.B")),
+        Light(PASSES["indirect"], noise(100 + number, 0.3), factor, ("a.R", "a.G", "a.B")),
         Light(PASSES["emission"], lamp, None, filtered=False),
     ]
 
 
+def denoiser_of(**settings: object) -> ShotDenoiser:
+    """One that leaves guides as they are."""
+    return ShotDenoiser(SHAPE, Method(DEFAULT(**settings), prefilter="off"), len(PASSES))
+
+
 def denoised(shot: Shot) -> list[Denoised]:
-    denoiser = LightsDenoiser(SHAPE, DEFAULT())
+    denoiser = denoiser_of()
     return [denoiser.denoise(frame, lights) for frame, lights in shot]
 
 
@@ -205,7 +211,7 @@ def test_a_firefly_that_the_renderer_clamped_in_the_picture_alone_leaves_no_hole
 def test_passes_that_are_no_parts_of_the_picture_are_left_alone() -> None:
     """As of a picture that was graded, or is of another view layer."""
     shot = [(replace(frame, color=np.float32(0.5) * frame.color), lights) for frame, lights in shot_of()]
-    alone, together = Denoiser(SHAPE, settings=DEFAULT()), LightsDenoiser(SHAPE, DEFAULT())
+    alone, together = Denoiser(SHAPE, settings=DEFAULT()), denoiser_of()
     with pytest.warns(
         UserWarning, match=r"add up to more than the picture in \d+ % of the pixels, .* as a whole"
     ) as told:
@@ -226,12 +232,12 @@ def test_direct_and_indirect_light_of_another_picture_do_not_replace_it() -> Non
     ]
     frame = replace(room, color=np.float32(0.25) * room.color)
     with pytest.warns(UserWarning, match="add up to more than the picture"):
-        found = LightsDenoiser(SHAPE, DEFAULT()).denoise(frame, lights)
+        found = denoiser_of().denoise(frame, lights)
     assert found.picture.mean() == pytest.approx(frame.color.mean(), rel=0.05)
 
 
 def test_a_cut_forgets_every_light() -> None:
-    denoiser, shot = LightsDenoiser(SHAPE, DEFAULT()), shot_of()
+    denoiser, shot = denoiser_of(), shot_of()
     first = denoiser.denoise(*shot[0])
     for frame, lights in shot[1:]:
         denoiser.denoise(frame, lights)
@@ -241,20 +247,20 @@ def test_a_cut_forgets_every_light() -> None:
 
 
 def test_the_error_of_a_sum_is_at_least_that_of_each_light() -> None:
-    denoiser = LightsDenoiser(SHAPE, DEFAULT(standard_error=True))
+    denoiser = denoiser_of(standard_error=True)
     lit = [replace(light, factor=None) for light in diffuse(0)[:2]]
     both = denoiser.denoise(frame_of(0, lit), lit).standard_error
-    one = LightsDenoiser(SHAPE, DEFAULT(standard_error=True)).denoise(frame_of(0, lit[:1]), lit[:1]).standard_error
+    one = denoiser_of(standard_error=True).denoise(frame_of(0, lit[:1]), lit[:1]).standard_error
     assert both is not None
     assert one is not None
     assert both.shape == SHAPE
     assert np.isfinite(both).all()
     assert (both >= one * 0.999).all()
-    assert LightsDenoiser(SHAPE, DEFAULT()).denoise(frame_of(0, lit), lit).standard_error is None
+    assert denoiser_of().denoise(frame_of(0, lit), lit).standard_error is None
 
 
 def test_times_are_those_of_all_lights() -> None:
-    denoiser, (frame, lights) = LightsDenoiser(SHAPE, DEFAULT()), shot_of()[0]
+    denoiser, (frame, lights) = denoiser_of(), shot_of()[0]
     denoiser.denoise(frame, lights)
     alone = Denoiser(SHAPE, settings=DEFAULT())
     alone.denoise(single(frame, lights[0].radiance, None))

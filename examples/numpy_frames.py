@@ -1,0 +1,43 @@
+"""Denoise a sequence of numpy arrays: what a renderer makes of each frame goes in, a clean picture comes out."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from svgf_cl import Denoiser, Frame
+from svgf_cl.compare.metrics import psnr
+from svgf_cl.io.display import display, to_bytes, write_image
+from svgf_cl.io.synthetic import room_frames
+
+HEIGHT, WIDTH = 360, 640
+FRAMES = 16
+
+
+def main(folder: Path) -> None:
+    """Denoise some frames; write the last, noisy and denoised, and say how far each is from the truth."""
+    with Denoiser((HEIGHT, WIDTH)) as den:
+        # Stands in for your renderer: a camera in a tiled room, whose noise is that of one sample a pixel.
+        for made in room_frames((HEIGHT, WIDTH), FRAMES):
+            frame = Frame.of(
+                color=made.color,  # (H, W, 3) noisy linear radiance; (H, W, 4) with alpha gives (H, W, 4)
+                normal=made.normal,  # (H, W, 3) in world space
+                depth=made.depth,  # (H, W) along the camera's axis
+                motion=made.motion,  # (H, W, 2) in pixels, previous minus current; or (H, W, 3) with that of depth
+                albedo=made.albedo,  # (H, W, 3), may be left out; keeps textures sharp
+                id=made.id,  # (H, W) integers, may be left out; keeps objects apart
+            )
+            clean = den.denoise(frame)  # (H, W, 3) float32: linear radiance, too
+            # At a cut to another view: den.reset()
+
+    truth = display(0.5 * made.albedo)  # the room is evenly lit
+    print(f"PSNR of the last frame: noisy {psnr(display(made.color), truth):.1f} dB, ", end="")
+    print(f"denoised {psnr(display(clean), truth):.1f} dB")
+    folder.mkdir(parents=True, exist_ok=True)
+    write_image(folder / "numpy_frames.png", to_bytes(np.hstack([made.color, clean])))
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1] if len(sys.argv) > 1 else "out/examples"))

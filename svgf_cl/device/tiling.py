@@ -1,0 +1,122 @@
+"""How a filter's frames are cut into tiles, and how much memory that takes on the device."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from svgf_cl.device.layout import WIDEST_VECTOR, Layout
+from svgf_cl.device.memory_plan import Slot, memory_slots
+from svgf_cl.device.tiles import Tile, best_window, tiles_of, window_lengths
+from svgf_cl.filters.margins import widest_margin
+from svgf_cl.filters.pipeline import Buffer, Pipeline, Quantity, Resource, history_of
+from svgf_cl.frame import Shape
+
+SLACK = 64  # pixels that the past of a tile may be larger by, to every side: for motion that differs within the tile
+
+
+@dataclass(frozen=True)
+class Tiling:
+    """How a pipeline's frames are cut into tiles.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+        Its lasting buffers hold every pixel, and are read along motion.
+    shape : (int, int)
+        (height, width) of the image.
+    row_alignment : int, pixels
+    """
+
+    pipeline: Pipeline
+    shape: Shape
+    row_alignment: int
+
+    def __post_init__(self) -> None:
+        for entry in self.pipeline.passes:
+            if self.pipeline.past_of(entry) and not entry.follows_motion:
+                raise ValueError(f"{entry.label}: expected to read the past along motion, or to work on whole frames")
+        for resource in (*self.past, *self.results):
+            if resource.spacing > 1:
+                raise ValueError(f"{resource.name}: expected what is kept on the host to hold every pixel")
+
+    @cached_property
+    def past(self) -> dict[Resource, tuple[Quantity, ...]]:
+        """What is read of the past."""
+        found: dict[Resource, dict[Quantity, None]] = {}
+        for entry in self.pipeline.passes:
+            for each in self.pipeline.past_of(entry):
+                found.setdefault(each.resource, {}).update(dict.fromkeys(use.quantity for use in each.uses))
+        return {resource: tuple(quantities) for resource, quantities in found.items()}
+
+    @cached_property
+    def results(self) -> dict[Resource, tuple[Quantity, ...]]:
+        """What is made to be shown: no pass reads it, and none takes its memory."""
+        last = {slot.buffers[-1] for slot in self.slots}
+        return {each: each.quantities for each in self.pipeline.unread if Buffer(each) in last}
+
+    @cached_property
+    def margin(self) -> int:
+        """Pixels around a tile that are worked on too."""
+        return widest_margin(self.pipeline)
+
+    @property
+    def unit(self) -> int:
+        """Windows begin at multiples of so many pixels."""
+        return WIDEST_VECTOR * max(entry.coarse_spacing for entry in self.pipeline.passes)
+
+    def past_window(self, window: Shape) -> Shape:
+        """The shape of a window on the past."""
+        height, width = (min(side, most + 2 * SLACK) for side, most in zip(self.shape, window, strict=True))
+        return height, width
+
+    def layout(self, shape: Shape) -> Layout:
+        """That of an image of this size."""
+        return Layout(*shape, self.row_alignment)
+
+    @cached_property
+    def slots(self) -> list[Slot]:
+        """The memory of all buffers but those of the past."""
+        left = [(slot, [each for each in slot.buffers if not each.previous]) for slot in memory_slots(self.pipeline)]
+        return [replace(slot, buffers=buffers) for slot, buffers in left if buffers]
+
+    @property
+    def past_slots(self) -> list[Slot]:
+        """The memory of the past."""
+        return [Slot([history_of(resource)], resource.planes, 0) for resource in self.past]
+
+    def sizes(self, window: Shape) -> list[int]:
+        """Bytes of every buffer on the device for windows of this shape."""
+        parts = ((self.layout(window), self.slots), (self.layout(self.past_window(window)), self.past_slots))
+        own = [layout.every(slot.spacing).nbytes(slot.planes.depth) for layout, slots in parts for slot in slots]
+        user = self.pipeline.user_nbytes
+        copied = [*user.values(), user.get("motion", 0)]  # a second one where motion leads into several windows
+        return own + [nbytes * window[0] * window[1] for nbytes in copied]
+
+    def whole(self) -> list[int]:
+        """Bytes of every buffer on the device for whole frames, without tiles."""
+        layout = self.layout(self.shape)
+        own = [layout.every(slot.spacing).nbytes(slot.planes.depth) for slot in memory_slots(self.pipeline)]
+        return own + [nbytes * self.shape[0] * self.shape[1] for nbytes in self.pipeline.user_nbytes.values()]
+
+    def indexable(self, window: Shape) -> bool:
+        """Whether the kernels' indices reach all pixels of the largest buffer."""
+        return self.layout(self.past_window(window)).indexable(self.pipeline.widest)
+
+    def window(self, total: int, largest: int) -> Shape | None:
+        """The best shape of windows for so many bytes in all and in one buffer; None where no window fits."""
+
+        def fits(window: Shape) -> bool:
+            sizes = self.sizes(window)
+            return sum(sizes) <= total and max(sizes) <= largest and self.indexable(window)
+
+        return best_window(self.shape, self.margin, self.unit, fits)
+
+    def least(self) -> int:
+        """Bytes of all buffers for the smallest windows."""
+        height, width = (window_lengths(side, self.margin, self.unit)[-1] for side in self.shape)
+        return sum(self.sizes((height, width)))
+
+    def tiles(self, window: Shape) -> list[Tile]:
+        """The tiles, row by row."""
+        return tiles_of(self.shape, window, self.margin, self.unit)

@@ -1,0 +1,112 @@
+"""What the header of an OpenEXR file says of how its pixels lie: windows, channels and their types, compression, view.
+
+Source: https://openexr.com/en/latest/OpenEXRFileLayout.html
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from svgf_cl.io.exr_header import Attributes, text_at
+from svgf_cl.io.image import COMPRESSIONS, Windows
+from svgf_cl.io.window import Window
+
+# Pixel types by their numbers in the list of channels.
+TYPES = (np.dtype(np.uint32), np.dtype(np.float16), np.dtype(np.float32))
+
+
+@dataclass(frozen=True)
+class Channel:
+    """The pixel type of a channel, and whether it has a value for every pixel."""
+
+    dtype: np.dtype[Any]
+    is_full: bool
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How the pixels of a part lie.
+
+    Parameters
+    ----------
+    windows : Windows
+    channels : dict of str to Channel
+    compression : str
+        One of `COMPRESSIONS`.
+    name, view : str
+        Those of the part; empty where it has none.
+    is_deep : bool
+        Whether a pixel has any number of samples.
+    """
+
+    windows: Windows
+    channels: dict[str, Channel]
+    compression: str
+    name: str
+    view: str
+    is_deep: bool
+
+    @property
+    def size(self) -> int:
+        """Bytes of pixels, not compressed."""
+        return self.windows.data.area * sum(channel.dtype.itemsize for channel in self.channels.values())
+
+
+def layout_of(part: Attributes) -> Layout:
+    """Read how the pixels of a part lie from its attributes; `ValueError` where one is missing or makes no sense."""
+    (aspect,) = _numbers(part, "pixelAspectRatio", "float", "<f")
+    (compression,) = _numbers(part, "compression", "compression", "<B")
+    if compression >= len(COMPRESSIONS):
+        raise ValueError(f"expected a compression of {', '.join(COMPRESSIONS)}, got number {compression}")
+    windows = Windows(_window(part, "dataWindow"), _window(part, "displayWindow"), aspect)
+    if min(windows.data[2:]) < 1:
+        raise ValueError(f"expected at least one pixel, got a data window of {windows.data}")
+    return Layout(
+        windows,
+        dict(_channels(part)),
+        COMPRESSIONS[compression],
+        _text(part, "name"),
+        _text(part, "view"),
+        _text(part, "type") in ("deepscanline", "deeptile"),
+    )
+
+
+def _numbers(part: Attributes, name: str, kind: str, form: str) -> tuple[Any, ...]:
+    """The numbers of an attribute that must be there and of that type."""
+    found, value = part.get(name, ("none", b""))
+    if found != kind or len(value) != struct.calcsize(form):
+        raise ValueError(f"expected a whole header with {name} of type {kind}, got {len(value)} bytes of type {found}")
+    return struct.unpack(form, value)
+
+
+def _window(part: Attributes, name: str) -> Window:
+    left, top, right, bottom = _numbers(part, name, "box2i", "<4i")
+    return Window(left, top, right - left + 1, bottom - top + 1)
+
+
+def _text(part: Attributes, name: str) -> str:
+    """The text of an attribute; empty where it is not there."""
+    kind, value = part.get(name, ("", b""))
+    return value.decode() if kind == "string" else ""
+
+
+def _channels(part: Attributes) -> Iterator[tuple[str, Channel]]:
+    """The channels that a part lists."""
+    kind, listed = part.get("channels", ("none", b""))
+    position = 0
+    while kind == "chlist" and listed[position : position + 1] not in (b"", b"\0"):
+        name, position = text_at(listed, position)
+        if len(listed) < position + 16:
+            break
+        number, across, down = struct.unpack_from("<i4xii", listed, position)
+        if not 0 <= number < len(TYPES):
+            raise ValueError(f"expected pixels of a known type, got number {number} in channel {name}")
+        yield name, Channel(TYPES[number], (across, down) == (1, 1))
+        position += 16
+    if kind != "chlist" or listed[position:] != b"\0" or position == 0:
+        raise ValueError("expected a whole header with a list of channels, got none or a damaged one")

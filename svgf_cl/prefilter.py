@@ -1,0 +1,101 @@
+"""`Prefilter`: takes the noise out of what guides the filter, before the light is filtered.
+
+The albedo of a rough mirror is that of whatever a sample reflected. Under depth of field, motion blur and fog, and
+where rays go through random places of their pixels, depth and the factors of light passes are noisy, too. Each of them
+goes through the filter itself, as light without surfaces: what noise changes from frame to frame is smoothed, the rest
+is kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from svgf_cl.denoisers import Denoisers
+from svgf_cl.filters import DEFAULT
+from svgf_cl.frame import Frame, Shape
+from svgf_cl.io.shot import Light
+
+Array = npt.NDArray[np.float32]
+Effort = Literal["auto", "on", "off"]
+EFFORTS: tuple[Effort, ...] = ("auto", "on", "off")
+
+LEAST_LENGTH = 1e-6  # of a normal
+# Albedos below it stay as they are: those of lamps, from which light must not leak into their surroundings.
+BLACK = 0.01
+# Along a row of pixels on a plane, one over depth rises evenly. By this share of it a pixel is off if depth is noisy.
+UNEVEN = 5e-4
+PLANE = 0.999  # cosine between normals of one plane
+HOLES = 0.02  # share of pixels that hit nothing between two that did: rays that were scattered before they hit
+
+
+def has_noisy_depth(frame: Frame) -> bool:
+    """Whether the depth of a frame is noisy."""
+    hit = np.any(frame.normal, axis=-1) & (frame.depth > 0.0) & np.isfinite(frame.depth)
+    left, middle, right = (np.s_[:, place : frame.shape[1] - 2 + place] for place in range(3))
+    if (hit[left] & ~hit[middle] & hit[right]).sum() > HOLES * hit.size:
+        return True
+    unit = frame.normal / np.maximum(np.linalg.norm(frame.normal, axis=-1, keepdims=True), LEAST_LENGTH)
+    is_flat = [np.sum(unit[side] * unit[middle], axis=-1) > PLANE for side in (left, right)]
+    plane = hit[left] & hit[middle] & hit[right] & is_flat[0] & is_flat[1]
+    nearness = 1.0 / np.where(hit, frame.depth, 1.0).astype(np.float64)
+    bend = np.abs(nearness[left] - 2.0 * nearness[middle] + nearness[right])[plane] / nearness[middle][plane]
+    return bend.size > 0 and float(np.median(bend)) > UNEVEN
+
+
+class Prefilter:
+    """Filters the guides of the frames of a shot.
+
+    Parameters
+    ----------
+    shape : (int, int)
+        (height, width) in pixels.
+    is_noisy : bool
+        Whether depth, factors of lights and light that is seen directly are filtered, too; albedo always is.
+    share : float
+        As of `Denoisers`.
+    """
+
+    def __init__(self, shape: Shape, *, is_noisy: bool, share: float = 1.0) -> None:
+        self._is_noisy = is_noisy
+        self._denoisers = Denoisers(shape, DEFAULT(), share)
+        self._flat = np.zeros((*shape, 3), np.float32)
+        self._flat[..., 2] = 1.0
+
+    def frame(self, frame: Frame) -> Frame:
+        """The same frame with better guides."""
+        better: dict[str, Array] = {}
+        if frame.albedo is not None:
+            is_black = frame.albedo.max(axis=-1, keepdims=True) < BLACK
+            better["albedo"] = np.where(is_black, frame.albedo, self._filtered("albedo", frame, frame.albedo))
+        if self._is_noisy:
+            with np.errstate(divide="ignore"):
+                nearness = np.where(frame.depth > 0.0, 1.0 / frame.depth, np.float32(0.0))
+                smooth = self._filtered("nearness", frame, np.repeat(nearness[..., None], 3, axis=-1))
+                better["depth"] = 1.0 / np.maximum(smooth[..., 0], np.float32(0.0))
+        return replace(frame, **better)
+
+    def lights(self, frame: Frame, lights: Sequence[Light]) -> tuple[Light, ...]:
+        """The same lights with better factors; those that are seen directly become ones to be filtered."""
+        if not self._is_noisy:
+            return tuple(lights)
+        factors: dict[tuple[str, ...], Array] = {}
+        for light in lights:
+            if light.factor is not None and light.factor_channels not in factors:
+                name = " ".join(light.factor_channels)
+                factors[light.factor_channels] = self._filtered(name, frame, light.factor)
+        return tuple(replace(light, factor=factors.get(light.factor_channels), filtered=True) for light in lights)
+
+    def reset(self) -> None:
+        """Forget the past, as at a cut."""
+        self._denoisers.reset()
+
+    def _filtered(self, name: str, frame: Frame, value: Array) -> Array:
+        """A guide (H, W, 3), filtered as light that lies on no surface."""
+        depth, motion = self._flat[..., 2], frame.motion[..., :2]
+        whole = Frame(color=np.asarray(value, np.float32), normal=self._flat, depth=depth, motion=motion)
+        return self._denoisers.denoise(name, whole)

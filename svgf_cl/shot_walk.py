@@ -1,0 +1,77 @@
+"""`ShotWalk`: a shot's files, gone along in both directions, so that later frames help, too."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+from svgf_cl.errors import SvgfError
+from svgf_cl.filters.temporal import TemporalFilter
+from svgf_cl.io.shot import Shot, ShotFrame
+from svgf_cl.lights import Channels, Denoised, Parts, Picture
+from svgf_cl.look_ahead import Estimate
+from svgf_cl.next_motion import motion_to_next
+from svgf_cl.shot_denoiser import Method, ShotDenoiser
+
+Look = Callable[[Shot, int, ShotFrame], None]
+Item = tuple[int, ShotFrame]
+
+
+class ShotWalk:
+    """A walk along a shot, light pass by light pass.
+
+    Parameters
+    ----------
+    shot : Shot
+    method : Method
+    look : callable, optional
+        Is given every frame before the forward filter takes it, with the shot and its index.
+
+    Raises
+    ------
+    SvgfError
+        The filter does not accumulate light over time.
+    """
+
+    def __init__(self, shot: Shot, method: Method, look: Look | None = None) -> None:
+        if not isinstance(method.settings, TemporalFilter):
+            raise SvgfError(f"--look-ahead: expected a filter over time, got {method.settings.name}")
+        self._shot, self._look = shot, look
+        # Both share the device's memory.
+        lights = 2 * max(1, len(shot.reading.lights))
+        self.forward, self._backward = (ShotDenoiser(shot.shape, method, lights) for _ in range(2))
+        self._parts: Parts | None = None
+
+    def __len__(self) -> int:
+        return len(self._shot)
+
+    def item(self, index: int) -> Item:
+        """All of a frame, and its index."""
+        return index, self._shot.read(index)
+
+    def to_next(self, index: int, item: Item, later: Item) -> Picture:
+        """The motion to the next frame, from the file or the cameras where they tell it."""
+        given = self._shot.motion_to_next(item[1])
+        return motion_to_next(item[1].frame, later[1].frame) if given is None else given
+
+    def begin(self, *, backward: bool) -> None:
+        """Forget the past."""
+        (self._backward if backward else self.forward).reset()
+
+    def estimates(self, item: Item, motion: Picture | None, *, backward: bool) -> Mapping[Channels, Estimate]:
+        """What a filter makes of each part of its next frame."""
+        index, source = item
+        denoiser = self._backward if backward else self.forward
+        if self._look and not backward:
+            self._look(self._shot, index, source)
+        frame = source.frame if motion is None else replace(source.frame, motion=motion)
+        parts = denoiser.parts(frame, source.lights)
+        if not backward:
+            self._parts = parts
+        made = denoiser.filtered(parts)
+        return {key: Estimate(picture, denoiser.uncertainty(key)) for key, picture in made.items()}
+
+    def composed(self, means: Mapping[Channels, Picture]) -> Denoised:
+        """The picture of the forward filter's last frame, from the means of its parts."""
+        assert self._parts is not None
+        return self._parts.composed(means)

@@ -1,0 +1,254 @@
+"""What runs beside the caller comes in order, is bounded, ends with it, and loses nothing."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import warnings
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from svgf_cl import FileError
+from svgf_cl.cli import plain_warnings
+from svgf_cl.io.exr import read_channels, write_channels
+from svgf_cl.io.overlap import Writers, ahead, in_order
+
+SECONDS = 20  # that no test takes unless it hangs
+
+
+class Source:
+    """Numbers up to `length`, then perhaps an error; it counts what was taken and says when it is closed."""
+
+    def __init__(self, length: int, error: BaseException | None = None) -> None:
+        self.length, self.error, self.taken, self.closed = length, error, 0, False
+        self.threads: set[int] = set()
+
+    def __iter__(self) -> Iterator[int]:
+        try:
+            for number in range(self.length):
+                self.taken += 1
+                self.threads.add(threading.get_ident())
+                yield number
+            if self.error:
+                raise self.error
+        finally:
+            self.closed = True
+
+
+def doubled(items: Iterable[int], count: int) -> Iterator[int]:
+    return in_order(lambda number: 2 * number, items, count)
+
+
+@pytest.mark.parametrize("count", [1, 3, 50])
+@pytest.mark.parametrize("length", [0, 1, 20])
+def test_all_items_come_in_order(length: int, count: int) -> None:
+    assert list(ahead(Source(length), count)) == list(range(length))
+    assert list(doubled(Source(length), count)) == list(range(0, 2 * length, 2))
+
+
+@pytest.mark.parametrize("count", [1, 4])
+def test_no_more_items_are_made_than_asked_for(count: int) -> None:
+    source = Source(50)
+    items = ahead(source, count)
+    assert source.taken == 0
+    for number in range(10):
+        assert next(items) == number
+        assert source.taken <= number + 1 + count
+    items.close()
+    assert threading.get_ident() not in source.threads
+    assert len(source.threads) == 1
+
+
+def test_the_next_item_is_made_while_the_caller_has_one() -> None:
+    made = [threading.Event() for _ in range(3)]
+
+    def source() -> Iterator[int]:
+        for number, event in enumerate(made):
+            event.set()
+            yield number
+
+    items = ahead(source(), 1)
+    next(items)
+    assert made[1].wait(SECONDS)
+    assert not made[2].is_set()
+    items.close()
+
+
+@pytest.mark.parametrize("error", [FileError("frame 3 is damaged"), KeyboardInterrupt(), MemoryError()])
+@pytest.mark.parametrize("count", [1, 8])
+def test_an_error_comes_in_its_place(error: BaseException, count: int) -> None:
+    def fails_at_three(number: int) -> int:
+        if number == 3:
+            raise error
+        return number
+
+    for results in (ahead(Source(3, error), count), in_order(fails_at_three, range(9), count)):
+        got: list[int] = []
+        with pytest.raises(type(error)):
+            got.extend(results)
+        assert got == [0, 1, 2]
+
+
+@pytest.mark.parametrize("over", [lambda items: ahead(items, 4), lambda items: doubled(items, 4)])
+def test_a_caller_that_stops_early_leaves_no_thread(over: Callable[[Iterable[int]], Iterator[int]]) -> None:
+    before, source = threading.active_count(), Source(1000)
+
+    def stopped() -> None:
+        for _ in over(source):
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stopped()
+    assert threading.active_count() == before
+    assert source.taken < 10
+
+
+def test_calls_of_a_function_overlap() -> None:
+    """Three that wait for each other end."""
+    barrier = threading.Barrier(3)
+    assert len(list(in_order(lambda _: barrier.wait(SECONDS), range(9), 3))) == 9
+
+
+def test_warnings_of_a_thread_reach_the_user(capsys: pytest.CaptureFixture[str]) -> None:
+    def source() -> Iterator[int]:
+        warnings.warn("frame 1 is odd", stacklevel=1)
+        yield 1
+
+    def job() -> None:
+        warnings.warn("picture 1 is odd", stacklevel=1)
+
+    with plain_warnings("svgf-cl"), Writers(1) as writers:
+        warnings.simplefilter("always")
+        writers.submit(job)
+        list(ahead(source(), 2))
+    said = capsys.readouterr().err
+    assert "svgf-cl: warning: frame 1 is odd\n" in said
+    assert "svgf-cl: warning: picture 1 is odd\n" in said
+
+
+# Writers
+
+
+def failing(message: str) -> None:
+    raise FileError(message)
+
+
+def test_all_jobs_are_done_at_the_end(tmp_path: Path) -> None:
+    """In folders that are made by whichever is first."""
+    planes = {"R": np.random.default_rng(0).random((20, 30), np.float32)}
+    paths = [tmp_path / "new" / "folder" / f"frame.{number:04d}.exr" for number in range(24)]
+    with Writers(4) as writers:
+        for path in paths:
+            writers.submit(write_channels, path, planes)
+    for path in paths:
+        np.testing.assert_array_equal(read_channels(path)["R"], planes["R"])
+    assert sorted(path.name for path in paths[0].parent.iterdir()) == [path.name for path in paths]
+
+
+def test_no_more_jobs_run_than_allowed() -> None:
+    running, most, lock = 0, 0, threading.Lock()
+    both = threading.Barrier(2)
+
+    def job() -> None:
+        nonlocal running, most
+        with lock:
+            running += 1
+            most = max(most, running)
+        both.wait(SECONDS)
+        with lock:
+            running -= 1
+
+    with Writers(2) as writers:
+        for _ in range(20):
+            writers.submit(job)
+    assert most == 2
+
+
+def test_an_error_is_raised_by_the_next_job_and_all_before_it_are_done() -> None:
+    done: list[int] = []
+
+    def three_jobs() -> None:
+        with Writers(1) as writers:
+            writers.submit(done.append, 1)
+            writers.submit(failing, "disk is full")
+            writers.submit(done.append, 2)
+            done.append(3)
+
+    with pytest.raises(FileError, match="disk is full"):
+        three_jobs()
+    assert done == [1]
+
+
+def test_of_several_errors_that_of_the_first_job_is_raised_and_the_others_are_told() -> None:
+    later = threading.Event()
+
+    def slow() -> None:
+        assert later.wait(SECONDS)
+        failing("first")
+
+    def fast() -> None:
+        later.set()
+        failing("second")
+
+    def both() -> None:
+        with Writers(3) as writers:
+            writers.submit(slow)
+            writers.submit(fast)
+
+    with pytest.raises(FileError, match="first"), pytest.warns(UserWarning, match="^second$"):
+        both()
+
+
+def test_an_error_of_the_block_comes_before_those_of_its_jobs() -> None:
+    done: list[int] = []
+
+    def interrupted() -> None:
+        with Writers(2) as writers:
+            writers.submit(done.append, 1)
+            writers.submit(failing, "disk is full")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt), pytest.warns(UserWarning, match="^disk is full$"):
+        interrupted()
+    assert done == [1]
+
+
+WRITE_FOR_EVER = """
+import itertools, signal, sys
+from pathlib import Path
+import numpy as np
+from svgf_cl.io.exr import write_channels
+from svgf_cl.io.overlap import Writers, ahead
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background processes ignore it
+planes = {"R": np.random.default_rng(0).random((400, 600), np.float32)}
+with Writers(2) as writers:
+    for number in ahead(itertools.count(), 3):
+        writers.submit(write_channels, Path(sys.argv[1], f"frame.{number:04d}.exr"), planes)
+        print(number, flush=True)
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Ctrl-C is sent as a signal")
+def test_ctrl_c_ends_at_once_and_leaves_whole_files_alone(tmp_path: Path) -> None:
+    with subprocess.Popen(
+        [sys.executable, "-c", WRITE_FOR_EVER, tmp_path], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as child:
+        assert child.stdout
+        for line in child.stdout:
+            if line.strip() == "5":
+                child.send_signal(signal.SIGINT)
+                break
+        _, said = child.communicate(timeout=SECONDS)
+    assert child.returncode == -signal.SIGINT
+    assert said.rstrip().endswith("KeyboardInterrupt")
+    left = sorted(tmp_path.iterdir())
+    assert len(left) >= 5
+    for number, path in enumerate(left):
+        assert path.name == f"frame.{number:04d}.exr"
+        assert read_channels(path)["R"].shape == (400, 600)
