@@ -25,7 +25,7 @@ def test_motion_is_that_of_positions_between_the_cameras_of_headers(tmp_path: Pa
     expected = [truth(at, motion=3) for at in moments()]
     expected[0].motion[:] = 0  # nothing tells the camera before
     same_frames(frames, expected, TOLERANCE)
-    np.testing.assert_allclose(frames.motion_to_next(0, frames[0])[..., :2], moments()[0].to_next, atol=1e-3)
+    np.testing.assert_allclose(frames.motion_to_next(frames.read(0))[..., :2], moments()[0].to_next, atol=1e-3)
     assert len(frames.reading.lights) == 4
 
 

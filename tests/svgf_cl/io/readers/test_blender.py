@@ -32,7 +32,7 @@ def test_frames_are_read_whatever_the_view_layer_is_called(view_layer: str, tmp_
     assert frames.reading.view_layer == view_layer
     same_frames(frames, [truth(at) for at in moments()])
     for index, at in enumerate(moments()):
-        np.testing.assert_array_equal(frames.motion_to_next(index, at.frame), at.to_next)
+        np.testing.assert_array_equal(frames.motion_to_next(frames.read(index)), at.to_next)
 
 
 def test_blender_is_known_without_its_attribute_too(tmp_path: Path) -> None:

@@ -46,8 +46,8 @@ def test_frames_are_read_with_the_cameras_beside_them(without: tuple[str, ...], 
     assert frames.reading.picture == ("R", "G", "B")
     same_frames(frames, [in_mitsuba(at) for at in moments()], TOLERANCE)
     for index, at in enumerate(moments()[:-1]):
-        np.testing.assert_allclose(frames.motion_to_next(index, frames[index])[..., :2], at.to_next, atol=1e-4)
-    assert frames.motion_to_next(2, frames[2]) is None, "nothing tells the camera of a frame behind the last"
+        np.testing.assert_allclose(frames.motion_to_next(frames.read(index))[..., :2], at.to_next, atol=1e-4)
+    assert frames.motion_to_next(frames.read(2)) is None, "nothing tells the camera of a frame behind the last"
 
 
 def in_mitsuba(at: Moment) -> Frame:
@@ -86,7 +86,7 @@ def test_a_crop_of_the_image_is_seen_by_the_same_camera(tmp_path: Path) -> None:
         outside = np.ones(frame.shape, bool)
         outside[inside] = False
         assert np.isinf(frame.depth[outside]).all()
-    following = frames.motion_to_next(0, frames[0])
+    following = frames.motion_to_next(frames.read(0))
     np.testing.assert_allclose(following[:9, :14, :2], moments()[0].to_next[:9, :14], atol=1e-4)
 
 
