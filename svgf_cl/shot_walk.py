@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from svgf_cl.errors import SvgfError
-from svgf_cl.filters.temporal import TemporalFilter
 from svgf_cl.io.shot import Shot, ShotFrame
 from svgf_cl.lights import Channels, Denoised, Parts, Picture
 from svgf_cl.look_ahead import Estimate
@@ -28,16 +26,9 @@ class ShotWalk:
         The frames of the shot to go along.
     look : callable, optional
         Is given every frame before the forward filter takes it, with the shot and its index.
-
-    Raises
-    ------
-    SvgfError
-        The filter does not accumulate light over time.
     """
 
     def __init__(self, shot: Shot, method: Method, places: range, look: Look | None = None) -> None:
-        if not isinstance(method.settings, TemporalFilter):
-            raise SvgfError(f"--look-ahead: expected a filter over time, got {method.settings.name}")
         self._shot, self._places, self._look = shot, places, look
         first = shot.read(0)  # so that all chunks are alike
         lights = 2 * max(1, len(first.lights))  # as both share the device's memory

@@ -223,7 +223,11 @@ def arnold(at: Moment, *, position: bool = True, motion: bool = False) -> Planes
     return planes | (layer("motionvector", -at.frame.motion[..., :2] * UP, "XY") if motion else {})
 
 
-ARNOLD_HEADER: Header = {"arnold/version": ("string", b"7.3.1.0"), "arnold/stats": ("string", b"{}")}
+ARNOLD_HEADER: Header = {
+    "arnold/version": ("string", b"7.3.1.0"),
+    "cryptomatte/b7e4a92/name": ("string", b"crypto_object"),
+    "cryptomatte/b7e4a92/manifest": ("string", b'{"floor":"00000001","w\xc3\xa4nde":"00000002"}'),
+}
 
 
 def vray(at: Moment, spelling: str = "maya") -> Planes:

@@ -14,8 +14,9 @@ def formats() -> None:
     in the names of passes do not matter. Any other renderer's passes are read with --map FIELD=PASS.
 
     \b
-    Example:
+    Examples:
       svgf-cl formats
+      svgf-cl denoise shot -o out --format arnold --map albedo=diffuse_color
     """
     rows = [
         (reader.name, reader.title if not index else "", field, passes, reader.switches.get(field, ""))

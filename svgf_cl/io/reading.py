@@ -267,7 +267,7 @@ def stacked(path: Path, planes: Mapping[str, Array], channels: Sequence[str]) ->
     """The picture (H, W, 3) of three channels; `FileError` where the file lacks one."""
     lost = [channel for channel in channels if channel not in planes]
     if lost:
-        raise FileError(f"{path}: expected the light pass {grouped(channels)} as in the first frame, found it not")
+        raise FileError(f"{path}: expected the light pass {grouped(channels)} as in the first frame, found none")
     return np.stack([np.asarray(planes[channel], np.float32) for channel in channels], axis=-1)
 
 

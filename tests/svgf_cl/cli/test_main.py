@@ -13,7 +13,7 @@ from svgf_cl.cli.tune import tune
 from tests.command_line import run
 
 # svgf_cl's own; the others come with other packages.
-COMMANDS = ("devices", "check", "denoise", "compare", "bench", "tune")
+COMMANDS = ("devices", "formats", "check", "denoise", "compare", "bench", "tune")
 
 
 @pytest.mark.parametrize("command", COMMANDS)

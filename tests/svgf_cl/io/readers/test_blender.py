@@ -137,13 +137,14 @@ def test_a_pass_of_light_without_its_colour_is_not_one(tmp_path: Path) -> None:
     assert open_sequence(shot(tmp_path, without="DiffCol")).reading.lights == ()
 
 
-@pytest.mark.parametrize("lost", ["Normal", "DiffDir", "DiffCol"])
+@pytest.mark.parametrize("lost", ["Normal", "DiffDir", "DiffCol", "Emit", "Denoising Albedo", "IndexOB"])
 def test_a_pass_that_a_later_frame_lacks_is_named(lost: str, tmp_path: Path) -> None:
     planes = {at.number: blender(at) for at in moments()}
     planes[2] = lacking(planes[2], lost)
     frames = open_sequence(written(tmp_path, planes))
+    words = {"Normal": "normal", "Denoising Albedo": "without albedo", "IndexOB": "without id"}.get(lost, lost)
     assert frames[0].shape == frames.shape
-    with pytest.raises(FileError, match=rf"shot_0002\.exr: expected .*{lost}"):
+    with pytest.raises(FileError, match=rf"shot_0002\.exr: expected .*{words}"):
         frames[1]
 
 

@@ -7,13 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl import FileError, open_sequence
+from svgf_cl import FileError, Frame, open_sequence
 from svgf_cl.io.window import Window
 from tests.exr_files import exr_bytes
 from tests.renderers import (
     MITSUBA_HEADER,
     NUMBERS,
     SHAPE,
+    Moment,
     Planes,
     cameras_file,
     mitsuba,
@@ -49,7 +50,7 @@ def test_frames_are_read_with_the_cameras_beside_them(without: tuple[str, ...], 
     assert frames.motion_to_next(frames.read(2)) is None, "nothing tells the camera of a frame behind the last"
 
 
-def in_mitsuba(at):
+def in_mitsuba(at: Moment) -> Frame:
     """The frame without ids, lamps and sky; nothing has no albedo."""
     frame = truth(at, "id", "emission", motion=3)
     frame.albedo[~at.hit] = 0

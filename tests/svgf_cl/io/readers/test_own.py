@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl import FileError, open_sequence
+from svgf_cl import FileError, Frame, open_sequence
 from svgf_cl.io.readers.own import CHANNEL_NAMES, OWN, needed
-from tests.renderers import moments, own, same_frames, truth, written
+from tests.renderers import Moment, moments, own, same_frames, truth, written
 
 
 def test_frames_are_read(tmp_path: Path) -> None:
@@ -61,6 +61,6 @@ def test_light_in_parts_needs_no_picture(tmp_path: Path) -> None:
     assert frames.reading.picture == ("R", "G", "B")
 
 
-def truth_in_parts(at):
+def truth_in_parts(at: Moment) -> Frame:
     frame = truth(at, "color", motion=3)
-    return type(frame)(**{**frame.present(), "direct": at.frame.direct, "indirect": at.frame.indirect})
+    return Frame(**{**frame.present(), "direct": at.frame.direct, "indirect": at.frame.indirect})

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl import FileError, open_sequence
+from svgf_cl import FileError, Frame, open_sequence
 from tests.renderers import NUMBERS, Header, Planes, cameras_file, matrices, moments, pbrt, same_frames, truth, written
 
 # Headers and positions are single precision.
@@ -18,7 +18,7 @@ def headers(**how: bool) -> dict[int, Header]:
     return {at.number: matrices(at, "pbrt", **how) for at in moments()}
 
 
-def expected():
+def expected() -> list[Frame]:
     """Frames without ids, lamps and sky; nothing tells the camera before the first."""
     frames = [truth(at, "id", "emission", motion=3) for at in moments()]
     frames[0].motion[:] = 0
