@@ -180,8 +180,8 @@ def made(shot: Shot, job: Job, chunk: Chunk, look: Look | None) -> Iterator[tupl
 def made_forward(shot: Shot, method: Method, places: range, look: Look | None) -> Iterator[tuple[int, Made]]:
     """As `made`, from earlier frames alone."""
     denoiser = ShotDenoiser(shot.shape, method, len(shot.reading.lights))
-    first = shot.read(0)  # so that all chunks are alike
-    denoiser.settle(first.frame, first.lights)
+    typical = shot.typical()  # the same for all chunks, so that they are alike
+    denoiser.settle(typical.frame, typical.lights)
     for index, source in zip(places, ahead(map(shot.read, places), READ_AHEAD), strict=True):
         if look:
             look(shot, index, source)

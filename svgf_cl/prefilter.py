@@ -30,6 +30,7 @@ BLACK = 0.01
 # Along a row of pixels on a plane, one over depth rises evenly. By this share of it a pixel is off if depth is noisy.
 UNEVEN = 5e-4
 PLANE = 0.999  # cosine between normals of one plane
+LEAST_HIT = 0.3  # length of a mean of normals, of which some are 0, where something was hit
 HOLES = 0.02  # share of pixels that hit nothing between two that did: rays that were scattered before they hit
 
 
@@ -55,13 +56,16 @@ class Prefilter:
     shape : (int, int)
         (height, width) in pixels.
     is_noisy : bool
-        Whether depth, factors of lights and light that is seen directly are filtered, too; albedo always is.
+        Whether depth is filtered, too; albedo always is.
+    is_followed : bool
+        Whether motion is known, so that factors of lights, and light that is seen directly, are filtered with the depth.
+        They hold textures, which would be smeared if they moved and motion were 0, as with Blender's motion blur.
     share : float
         As of `Denoisers`.
     """
 
-    def __init__(self, shape: Shape, *, is_noisy: bool, share: float = 1.0) -> None:
-        self._is_noisy = is_noisy
+    def __init__(self, shape: Shape, *, is_noisy: bool, is_followed: bool = True, share: float = 1.0) -> None:
+        self._is_noisy, self._filters_lights = is_noisy, is_noisy and is_followed
         self._denoisers = Denoisers(shape, DEFAULT(), share)
         self._flat = np.zeros((*shape, 3), np.float32)
         self._flat[..., 2] = 1.0
@@ -77,11 +81,12 @@ class Prefilter:
                 nearness = np.where(frame.depth > 0.0, 1.0 / frame.depth, np.float32(0.0))
                 smooth = self._filtered("nearness", frame, np.repeat(nearness[..., None], 3, axis=-1))
                 better["depth"] = 1.0 / np.maximum(smooth[..., 0], np.float32(0.0))
+            better["normal"] = self._without_holes(frame)
         return replace(frame, **better)
 
     def lights(self, frame: Frame, lights: Sequence[Light]) -> tuple[Light, ...]:
         """The same lights with better factors; those that are seen directly become ones to be filtered."""
-        if not self._is_noisy:
+        if not self._filters_lights:
             return tuple(lights)
         factors: dict[tuple[str, ...], Array] = {}
         for light in lights:
@@ -89,6 +94,13 @@ class Prefilter:
                 name = " ".join(light.factor_channels)
                 factors[light.factor_channels] = self._filtered(name, frame, light.factor)
         return tuple(replace(light, factor=factors.get(light.factor_channels), filtered=True) for light in lights)
+
+    def _without_holes(self, frame: Frame) -> Array:
+        """The normals, also where a ray that was scattered before it hit something left a hole."""
+        normal = 2.0 * self._filtered("normal", frame, 0.5 * frame.normal + 0.5) - 1.0
+        length = np.linalg.norm(normal, axis=-1, keepdims=True)
+        is_hole = ~frame.normal.any(axis=-1, keepdims=True) & (length > LEAST_HIT)
+        return np.where(is_hole, normal / np.maximum(length, LEAST_HIT), frame.normal)
 
     def reset(self) -> None:
         """Forget the past, as at a cut."""
@@ -98,4 +110,18 @@ class Prefilter:
         """A guide (H, W, 3), filtered as light that lies on no surface."""
         depth, motion = self._flat[..., 2], frame.motion[..., :2]
         whole = Frame(color=np.asarray(value, np.float32), normal=self._flat, depth=depth, motion=motion)
-        return self._denoisers.denoise(name, whole)
+        smooth: Array = np.clip(self._denoisers.denoise(name, whole), *extremes(whole.color))
+        return smooth
+
+
+def extremes(value: Array) -> tuple[Array, Array]:
+    """The least and the greatest value (H, W, C) of each pixel and its eight neighbours: what is filtered stays between.
+
+    So nothing is left behind where motion is wrong.
+    """
+    padded = np.pad(value, ((1, 1), (1, 1), (0, 0)), mode="edge")
+    found = []
+    for choose in (np.minimum, np.maximum):
+        rows = choose(choose(padded[:-2], padded[1:-1]), padded[2:])
+        found.append(choose(choose(rows[:, :-2], rows[:, 1:-1]), rows[:, 2:]))
+    return found[0], found[1]

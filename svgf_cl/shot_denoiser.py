@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
+import numpy as np
+
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.temporal import TemporalFilter
 from svgf_cl.frame import Frame, Shape
@@ -61,11 +63,12 @@ class ShotDenoiser:
     def settle(self, frame: Frame, lights: Sequence[Light] = ()) -> None:
         """Tell from a frame what holds for all of the shot: how guides are filtered, and whether lights are parts.
 
-        By default that is the first frame that comes; parameters of `denoise`.
+        By default that is the first frame that comes; a later one tells motion, too. Parameters are those of `denoise`.
         """
         if self._method.prefilter != "off":
             is_noisy = self._method.prefilter == "on" or has_noisy_depth(frame)
-            self._prefilter = Prefilter(self._shape, is_noisy=is_noisy, share=self._share)
+            is_followed = bool(np.any(frame.motion))
+            self._prefilter = Prefilter(self._shape, is_noisy=is_noisy, is_followed=is_followed, share=self._share)
         if lights and self._method.lights:
             self._has_parts = is_sum(remainder(frame, [finite(light) for light in lights]))
         self._is_settled = True

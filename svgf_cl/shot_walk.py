@@ -30,11 +30,11 @@ class ShotWalk:
 
     def __init__(self, shot: Shot, method: Method, places: range, look: Look | None = None) -> None:
         self._shot, self._places, self._look = shot, places, look
-        first = shot.read(0)  # so that all chunks are alike
-        lights = 2 * max(1, len(first.lights))  # as both share the device's memory
+        typical = shot.typical()  # the same for all chunks, so that they are alike
+        lights = 2 * max(1, len(typical.lights))  # as both share the device's memory
         self.forward, self._backward = (ShotDenoiser(shot.shape, method, lights) for _ in range(2))
         for denoiser in (self.forward, self._backward):
-            denoiser.settle(first.frame, first.lights)
+            denoiser.settle(typical.frame, typical.lights)
         self._parts: Parts | None = None
 
     @property

@@ -153,6 +153,10 @@ class Shot(Sequence[Frame]):
         lights = tuple(self._light(path, planes, light, own) for light in self.reading.lights)
         return ShotFrame(path, image, moved(frame, own, self.window), lights)
 
+    def typical(self) -> ShotFrame:
+        """A frame that tells what holds for all of the shot: the second one, if there is one, as it has motion."""
+        return self.read(min(1, len(self) - 1))
+
     def motion_to_next(self, source: ShotFrame) -> Picture | None:
         """The motion of a frame to the next one, (H, W, 2 or 3), where its file or the cameras tell it."""
         path, image = source.path, source.image
