@@ -4,7 +4,7 @@ from svgf_cl.camera import Camera, motion_from_cameras
 from svgf_cl.check import check_frame, check_sequence
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.device.tuning import Tuning
-from svgf_cl.errors import ArgumentError, DeviceError, FileError, FrameError, SettingsError, SvgfError
+from svgf_cl.errors import ArgumentError, DeviceError, FileError, FrameError, SchedulerError, SettingsError, SvgfError
 from svgf_cl.filters import Accumulation, Eaw, Kalman, Lbf, Sbf, Settings
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Frame
@@ -27,6 +27,7 @@ __all__ = [
     "Kalman",
     "Lbf",
     "Sbf",
+    "SchedulerError",
     "Settings",
     "SettingsError",
     "SvgfError",

@@ -40,6 +40,10 @@ class FileError(SvgfError):
     """A file is missing, unreadable, cannot be written, or does not fit the others."""
 
 
+class SchedulerError(SvgfError):
+    """No Dask scheduler answers, it has no worker, or its workers cannot do the work."""
+
+
 def one_line(message: object) -> str:
     """`message` without its line breaks: what libraries say goes into errors that are one line."""
     return " ".join(str(message).split())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from svgf_cl.errors import FileError
@@ -81,11 +81,24 @@ class Job:
     style: Style = field(default_factory=Style)
     look_ahead: int | None = None
 
-    def part(self, places: range) -> Job:
-        """The same job for some of its frames."""
-        return replace(
-            self, paths=self.paths[places.start : places.stop], targets=self.targets[places.start : places.stop]
-        )
+
+@dataclass(frozen=True)
+class Chunk:
+    """A stretch of a shot, by the indices of its frames.
+
+    Parameters
+    ----------
+    first : int
+        The first one that is filtered.
+    written : range
+        Those that are written.
+    end : int
+        Behind the last one that is filtered, for `written` to be made from later frames, too.
+    """
+
+    first: int
+    written: range
+    end: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,14 +137,13 @@ class Done:
     times: Mapping[str, float]
 
 
-def run(job: Job, warm_up: int = 0, look: Look | None = None) -> Iterator[Done]:
-    """Denoise the frames of a job and write them; frames are read and written while others are filtered.
+def run(job: Job, chunk: Chunk, look: Look | None = None) -> Iterator[Done]:
+    """Denoise a chunk of a shot and write its files; frames are read and written while others are filtered.
 
     Parameters
     ----------
     job : Job
-    warm_up : int
-        So many of the first frames are filtered, so that those behind them have a past, and not written.
+    chunk : Chunk
     look : callable, optional
         Is given every frame before it is filtered, with the shot and its index.
 
@@ -148,26 +160,34 @@ def run(job: Job, warm_up: int = 0, look: Look | None = None) -> Iterator[Done]:
         As of `Denoiser.denoise`.
     """
     shot = Shot(job.paths, job.how, job.separate)
-    frames = enumerate(made(shot, job, look))
-    wanted = (frame for index, frame in frames if index >= warm_up)
-    targets = iter(job.targets[warm_up:])
-    yield from in_order(lambda frame: finished(shot, job.style, *frame), zip(targets, wanted, strict=True), WRITERS)
+    frames = made(shot, job, chunk, look)
+    wanted = ((job.targets[index], frame) for index, frame in frames if index in chunk.written)
+    yield from in_order(lambda each: finished(shot, job.style, *each), wanted, WRITERS)
 
 
-def made(shot: Shot, job: Job, look: Look | None) -> Iterator[Made]:
-    """What is made of each frame of a shot, in order."""
-    if job.look_ahead is not None:
-        walk = ShotWalk(shot, job.method, look)
-        for (_, source), parts in both_ways(walk, sorted(shot.cuts), job.look_ahead or None):
-            yield Made(source, walk.composed(parts), walk.forward.profile())
+def made(shot: Shot, job: Job, chunk: Chunk, look: Look | None) -> Iterator[tuple[int, Made]]:
+    """Index of each frame of a chunk, in order up to the last one that is written, and what is made of it."""
+    if job.look_ahead is None:
+        yield from made_forward(shot, job.method, range(chunk.first, chunk.written.stop), look)
         return
-    denoiser = ShotDenoiser(shot.shape, job.method, len(shot.reading.lights))
-    for index, source in enumerate(ahead(map(shot.read, range(len(shot))), READ_AHEAD)):
+    walk = ShotWalk(shot, job.method, range(chunk.first, chunk.end), look)
+    for (index, source), parts in both_ways(walk, walk.cuts, job.look_ahead or None):
+        if index >= chunk.written.stop:
+            return
+        yield index, Made(source, walk.composed(parts), walk.forward.profile())
+
+
+def made_forward(shot: Shot, method: Method, places: range, look: Look | None) -> Iterator[tuple[int, Made]]:
+    """As `made`, from earlier frames alone."""
+    denoiser = ShotDenoiser(shot.shape, method, len(shot.reading.lights))
+    first = shot.read(0)  # so that all chunks are alike
+    denoiser.settle(first.frame, first.lights)
+    for index, source in zip(places, ahead(map(shot.read, places), READ_AHEAD), strict=True):
         if look:
             look(shot, index, source)
         if index in shot.cuts:
             denoiser.reset()
-        yield Made(source, denoiser.denoise(source.frame, source.lights), denoiser.profile())
+        yield index, Made(source, denoiser.denoise(source.frame, source.lights), denoiser.profile())
 
 
 def finished(shot: Shot, style: Style, target: Path, made: Made) -> Done:

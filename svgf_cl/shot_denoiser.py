@@ -56,7 +56,19 @@ class ShotDenoiser:
         self._shape = shape
         self._lights = LightsDenoiser(shape, method.settings, self._share)
         self._prefilter: Prefilter | None = None
-        self._has_parts: bool | None = None
+        self._is_settled = self._has_parts = False
+
+    def settle(self, frame: Frame, lights: Sequence[Light] = ()) -> None:
+        """Tell from a frame what holds for all of the shot: how guides are filtered, and whether lights are parts.
+
+        By default that is the first frame that comes; parameters of `denoise`.
+        """
+        if self._method.prefilter != "off":
+            is_noisy = self._method.prefilter == "on" or has_noisy_depth(frame)
+            self._prefilter = Prefilter(self._shape, is_noisy=is_noisy, share=self._share)
+        if lights and self._method.lights:
+            self._has_parts = is_sum(remainder(frame, [finite(light) for light in lights]))
+        self._is_settled = True
 
     def denoise(self, frame: Frame, lights: Sequence[Light] = ()) -> Denoised:
         """Denoise the next frame.
@@ -78,16 +90,15 @@ class ShotDenoiser:
 
     def parts(self, frame: Frame, lights: Sequence[Light] = ()) -> Parts:
         """What is to be filtered of the next frame, with its guides filtered already; parameters of `denoise`."""
-        guided = self._guided(frame)
+        if not self._is_settled:
+            self.settle(frame, lights)
+        guided = self._prefilter.frame(frame) if self._prefilter else frame
         if not (lights and self._method.lights):
             return Parts(guided)
-        lights = [finite(light) for light in lights]
-        rest = remainder(frame, lights)
-        if self._has_parts is None:
-            self._has_parts = is_sum(rest)
         if not self._has_parts:  # light that is seen directly may be of another picture, too
             return Parts(replace(guided, direct=None, indirect=None, emission=None))
-        lights, rest = limited(lights, rest)
+        lights = [finite(light) for light in lights]
+        lights, rest = limited(lights, remainder(frame, lights))
         better = self._guided_lights(frame, lights)
         return Parts(guided, better, rest, new_factors(lights, better))
 
@@ -110,15 +121,6 @@ class ShotDenoiser:
     def profile(self) -> dict[str, float]:
         """Milliseconds on the device of each pass of the last frame, all lights together."""
         return self._lights.profile()
-
-    def _guided(self, frame: Frame) -> Frame:
-        """The frame with better guides."""
-        if self._method.prefilter == "off":
-            return frame
-        if self._prefilter is None:
-            is_noisy = self._method.prefilter == "on" or has_noisy_depth(frame)
-            self._prefilter = Prefilter(self._shape, is_noisy=is_noisy, share=self._share)
-        return self._prefilter.frame(frame)
 
     def _guided_lights(self, frame: Frame, lights: Sequence[Light]) -> Sequence[Light]:
         """Lights with better factors; without a prefilter, the albedo of what is reflected is too noisy to be used."""

@@ -24,6 +24,8 @@ class ShotWalk:
     ----------
     shot : Shot
     method : Method
+    places : range
+        The frames of the shot to go along.
     look : callable, optional
         Is given every frame before the forward filter takes it, with the shot and its index.
 
@@ -33,21 +35,28 @@ class ShotWalk:
         The filter does not accumulate light over time.
     """
 
-    def __init__(self, shot: Shot, method: Method, look: Look | None = None) -> None:
+    def __init__(self, shot: Shot, method: Method, places: range, look: Look | None = None) -> None:
         if not isinstance(method.settings, TemporalFilter):
             raise SvgfError(f"--look-ahead: expected a filter over time, got {method.settings.name}")
-        self._shot, self._look = shot, look
-        # Both share the device's memory.
-        lights = 2 * max(1, len(shot.reading.lights))
+        self._shot, self._places, self._look = shot, places, look
+        first = shot.read(0)  # so that all chunks are alike
+        lights = 2 * max(1, len(first.lights))  # as both share the device's memory
         self.forward, self._backward = (ShotDenoiser(shot.shape, method, lights) for _ in range(2))
+        for denoiser in (self.forward, self._backward):
+            denoiser.settle(first.frame, first.lights)
         self._parts: Parts | None = None
 
+    @property
+    def cuts(self) -> list[int]:
+        """Those of the shot that lie within the walk."""
+        return [cut - self._places.start for cut in sorted(self._shot.cuts) if cut in self._places[1:]]
+
     def __len__(self) -> int:
-        return len(self._shot)
+        return len(self._places)
 
     def item(self, index: int) -> Item:
-        """All of a frame, and its index."""
-        return index, self._shot.read(index)
+        """All of a frame, and its index in the shot."""
+        return self._places[index], self._shot.read(self._places[index])
 
     def to_next(self, index: int, item: Item, later: Item) -> Picture:
         """The motion to the next frame, from the file or the cameras where they tell it."""

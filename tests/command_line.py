@@ -15,8 +15,8 @@ from svgf_cl.io import cache
 # Of the frames that most tests begin with.
 NAMES = [f"frame.{number:04d}.exr" for number in range(3)]
 
-# Kills the process as the picture with that number is whole but has not got its name yet. What the tracer has compiled
-# lies in the user's own cache folder, wherever the rest may be kept.
+# Sends a signal to the process as the picture with that number is whole but has not got its name yet. What the tracer
+# has compiled lies in the user's own cache folder, wherever the rest may be kept.
 KILLED = """
 import os, signal, sys
 from pathlib import Path
@@ -28,7 +28,7 @@ def rename_or_die(source, target):
     global left
     left -= str(target).endswith(".exr")
     if left < 0:
-        os.kill(os.getpid(), signal.SIGKILL)
+        os.kill(os.getpid(), signal.{signal})
     rename(source, target)
 os.replace, cache.cache_folder = rename_or_die, lambda: folder
 main(sys.argv[3:])
@@ -44,10 +44,15 @@ def run(*argv: str | Path) -> int:
 
 def run_killed(after: int, *argv: str | Path, first: str = "") -> None:
     """Run ``svgf-cl argv`` in a process that dies after so many EXR files; `first` is run there before all else."""
-    program = KILLED.format(first=first)
-    command = [sys.executable, "-c", program, str(after), cache.cache_folder(), *argv]
-    child = subprocess.run(command, capture_output=True, text=True, check=False)
+    child = run_signalled("SIGKILL", after, *argv, first=first)
     assert child.returncode == -signal.SIGKILL, child.stderr
+
+
+def run_signalled(name: str, after: int, *argv: str | Path, first: str = "") -> subprocess.CompletedProcess[str]:
+    """Run ``svgf-cl argv`` in a process that gets a signal after so many EXR files."""
+    program = KILLED.format(first=first, signal=name)
+    command = [sys.executable, "-c", program, str(after), cache.cache_folder(), *argv]
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
 
 
 def contents(folder: Path) -> dict[str, bytes]:

@@ -8,9 +8,12 @@ from pathlib import Path
 
 import pyopencl as cl
 import pytest
+from distributed import LocalCluster
 
+from svgf_cl.cli import log
 from svgf_cl.device import devices, tuning
 from svgf_cl.io import cache
+from tests.cluster import local_cluster
 from tests.command_line import run
 
 
@@ -32,6 +35,14 @@ def no_references(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope="session", autouse=True)
+def no_progress() -> Iterator[None]:
+    """No lines of progress, however slow this machine is: what else is on stderr is counted."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(log, "SECONDS", float("inf"))
+        yield
+
+
 @pytest.fixture
 def untold(monkeypatch: pytest.MonkeyPatch) -> None:
     """As if this process had not tried yet what can be kept, nor told of what cannot."""
@@ -50,6 +61,13 @@ def queue() -> cl.CommandQueue:
 def context(queue: cl.CommandQueue) -> cl.Context:
     """The context of `queue`."""
     return queue.context
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[LocalCluster]:
+    """A scheduler with `WORKERS` workers."""
+    with local_cluster() as cluster:
+        yield cluster
 
 
 @pytest.fixture

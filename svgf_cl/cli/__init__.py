@@ -15,6 +15,7 @@ import typer
 
 from svgf_cl import __version__
 from svgf_cl.cli import bench, check, compare, denoise, devices, formats, tune
+from svgf_cl.cli.signals import terminated_like_interrupted
 from svgf_cl.errors import SvgfError, one_line
 
 Command = Callable[..., None]
@@ -32,7 +33,7 @@ COMMANDS: dict[str, Command] = {
 GROUP = "svgf_cl.commands"
 # As the help lists them; any others come behind.
 ORDER = ("devices", "demo", "scenes", "render", "formats", "check", "denoise", "compare", "bench", "tune")
-INTERRUPTED = 130  # as a shell has it of a program that Ctrl-C ends
+INTERRUPTED = 130  # as a shell has it of a program that Ctrl-C ends; so does SIGTERM here
 # What a command says that takes whatever comes.
 ANYTHING = {"ignore_unknown_options": True, "allow_extra_args": True}
 
@@ -68,7 +69,7 @@ def application() -> typer.Typer:
     # Plain help and errors: they read the same in a terminal, in a log and through grep.
     app = typer.Typer(
         invoke_without_command=True,
-        epilog="Exit codes: 0 fine; 1 a comparison or check failed, or a run broke off; 2 wrong input.",
+        epilog="Exit codes: 0 fine; 1 a check failed or a run broke off; 2 wrong input; 130 interrupted.",
         add_completion=False,
         rich_markup_mode=None,
         pretty_exceptions_enable=False,
@@ -108,7 +109,7 @@ def leave(app: typer.Typer, arguments: Sequence[str], name: str, usage: str) -> 
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     try:
-        with plain_warnings(name):
+        with plain_warnings(name), terminated_like_interrupted():
             code = app(list(arguments), prog_name=usage, standalone_mode=False)
         if code == INTERRUPTED:
             raise KeyboardInterrupt

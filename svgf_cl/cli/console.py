@@ -1,16 +1,19 @@
-"""What all commands show alike: progress bars, tables, milliseconds."""
+"""What all commands show alike: progress, tables, milliseconds."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from itertools import count
 from statistics import median
 from typing import TypeVar
 
 from rich.console import Console
 from rich.progress import Progress, TextColumn
 from rich.table import Table
+
+from svgf_cl.cli.log import Log
 
 Item = TypeVar("Item")
 
@@ -22,9 +25,13 @@ NARROW = 72  # columns where a terminal has fewer: it breaks lines itself, where
 
 @contextmanager
 def progress_bar(title: str, total: int) -> Iterator[Callable[[], None]]:
-    """Show progress and the time left, on stderr and only where that is a terminal; call what this yields per step."""
+    """Show progress and the time left, on stderr: a bar on a terminal, else lines; call what this yields per step."""
     console = Console(stderr=True)
-    with Progress(console=console, disable=not (console.is_terminal and total)) as progress:
+    if not console.is_terminal:
+        log, steps = Log(title, total), count(1)
+        yield lambda: log.report(next(steps))
+        return
+    with Progress(console=console, disable=not total) as progress:
         task = progress.add_task(title, total=total)
         yield lambda: progress.advance(task)
 
@@ -36,9 +43,11 @@ def share_bar(title: str, total: int) -> Iterator[Callable[[float, str], None]]:
     What is done at the first call was done before: the time left is judged by what follows.
     """
     console = Console(stderr=True)
+    if not console.is_terminal:
+        yield Log(title, total, resumed=True).report
+        return
     columns = (*Progress.get_default_columns(), TextColumn("{task.fields[remark]}"))
-    hidden = not console.is_terminal
-    with Progress(*columns, console=console, disable=hidden, speed_estimate_period=SLOWEST_STEP) as progress:
+    with Progress(*columns, console=console, speed_estimate_period=SLOWEST_STEP) as progress:
         progress.add_task(title, total=None, remark="")
         (task,) = progress.tasks
 

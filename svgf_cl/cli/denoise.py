@@ -3,43 +3,51 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from svgf_cl.chunks import CHUNK, WARM_UP, cut, denoise_on_cluster
 from svgf_cl.cli import reading
 from svgf_cl.cli.console import kept_of, show_times, tracked
 from svgf_cl.cli.options import AllowGaps, Exposure, FilterName, Frames, SettingTexts, parse_settings
-from svgf_cl.cli.remarks import Remarks
+from svgf_cl.cli.remarks import Remarks, look_at_surfaces
 from svgf_cl.errors import SvgfError, shown
 from svgf_cl.filters import DEFAULT
 from svgf_cl.io.atomic import output_folder
 from svgf_cl.io.patterns import has_number, parse_range
 from svgf_cl.io.separate import SeparateFiles
 from svgf_cl.io.sequence import check_leftovers, find_frames, number_of
-from svgf_cl.job import Job, Style, png_of, run, target_paths
+from svgf_cl.io.shot import Shot
+from svgf_cl.job import Chunk, Done, Job, Style, png_of, run, target_paths
 from svgf_cl.prefilter import EFFORTS, Effort
 from svgf_cl.shot_denoiser import Method
 
 Separate = Annotated[Path | None, typer.Option(metavar="FILES", help="Files of this field alone, by number.")]
 
+CHUNK_HELP = f"Cut the shot into chunks of N frames, each with its own warm-up. With --scheduler {CHUNK}, else one."
+SCHEDULER_HELP = "Denoise chunks on the workers of the Dask scheduler there, for example tcp://10.0.0.7:8786."
+
 
 def denoise(
-    frames: Frames,
     output: Annotated[
         Path,
         typer.Option(
             "-o", "--output", metavar="DIR", help="Folder to write to, made if missing, or a pattern: out/####.exr."
         ),
     ],
+    frames: Frames = [],  # noqa: B006  # never changed; typer wants the default spelled here
     filter_: FilterName = DEFAULT.name,
-    set_: SettingTexts = [],  # noqa: B006  # never changed; typer wants the default spelled here
+    set_: SettingTexts = [],  # noqa: B006
     span: Annotated[str | None, typer.Option("--frames", metavar="FIRST-LAST", help="Only these frames.")] = None,
     warm_up: Annotated[
         int,
-        typer.Option(min=0, metavar="N", help="Filter N more frames before the first of --frames, to have a past."),
-    ] = 0,
+        typer.Option(min=0, metavar="N", help="Filter N more frames before the first of --frames or of a chunk."),
+    ] = WARM_UP,
+    chunk: Annotated[int | None, typer.Option(min=1, metavar="N", help=CHUNK_HELP)] = None,
+    scheduler: Annotated[str | None, typer.Option(metavar="ADDRESS", help=SCHEDULER_HELP)] = None,
     look_ahead: Annotated[
         str | None,
         typer.Option(
@@ -68,6 +76,9 @@ def denoise(
     format_: reading.Format = None,
     maps: reading.Maps = [],  # noqa: B006
     view_layer: reading.ViewLayer = None,
+    color: Annotated[
+        Path | None, typer.Option(metavar="FILES", help="The same as FRAMES, where each pass has files of its own.")
+    ] = None,
     albedo: Separate = None,
     normal: Separate = None,
     depth: Separate = None,
@@ -92,8 +103,9 @@ def denoise(
     Examples:
       svgf-cl denoise 'shot/####.exr' -o 'out/####.exr'
       svgf-cl denoise shot -o out --layer Denoised              # beside the noisy passes
-      svgf-cl denoise shot -o out --frames 101-150 --warm-up 16 # a stretch that fits to those of other machines
-      svgf-cl denoise 'beauty.####.exr' --albedo 'albedo.####.exr' --normal 'N.####.exr' --depth 'Z.####.exr' \\
+      svgf-cl denoise shot -o out --frames 101-150              # a stretch that fits to those of other machines
+      svgf-cl denoise shot -o out --scheduler tcp://10.0.0.7:8786
+      svgf-cl denoise --color 'beauty.####.exr' --albedo 'albedo.####.exr' --normal 'N.####.exr' --depth 'Z.####.exr' \\
                       --motion 'mv.####.exr' -o out
       svgf-cl denoise out/box -o out/box-sure --set standard_error=on   # and the channel standard_error
       svgf-cl denoise out/box -o out/box-eaw --filter eaw --set sigma_color=2
@@ -101,15 +113,16 @@ def denoise(
     if plain and layer:
         raise SvgfError("--layer: expected no --plain, which writes nothing beside the picture")
     fields = {"albedo": albedo, "normal": normal, "depth": depth, "motion": motion, "id": id_}
-    sources = find_frames(frames, allow_gaps=allow_gaps)
+    if bool(frames) == bool(color):
+        raise SvgfError(f"denoise: expected either FRAMES or --color, got {'both' if color else 'neither'}")
+    sources = find_frames(frames or [color], allow_gaps=allow_gaps)
     selected = chosen(sources, span)
-    first = max(0, selected.start - warm_up)
     folder = output.parent if has_number(output) else output
     output_folder(folder)
     targets = target_paths(sources, output)
     job = Job(
-        tuple(sources[first : selected.stop]),
-        tuple(targets[first : selected.stop]),
+        tuple(sources),
+        tuple(targets),
         Method(parse_settings(filter_, set_), lights, parse_effort(prefilter)),
         reading.read_as(format_, maps, view_layer, cameras, still_camera, motion_scale, motion_flip),
         SeparateFiles.of({name: path for name, path in fields.items() if path}),
@@ -117,9 +130,9 @@ def denoise(
         parse_look_ahead(look_ahead),
     )
     check_leftovers(folder, [*targets, *(png_of(target) for target in targets if png)])
+    chunks = cut(job, selected, chunk or (CHUNK if scheduler else len(selected)), warm_up)
     total, kept, times = len(selected), 0, []
-    remarks = Remarks(len(job.paths), check=check)
-    for done in tracked(run(job, selected.start - first, remarks.look), total, "denoising"):
+    for done in tracked(frames_done(job, chunks, scheduler, check), total, "denoising"):
         kept += done.kept
         times.append(done.times)
     show_times(times)
@@ -141,6 +154,17 @@ def parse_look_ahead(text: str | None) -> int | None:
     if not re.fullmatch(r"[1-9]\d{,5}", text, re.ASCII):
         raise SvgfError(f"--look-ahead: expected a number of frames, or all, got {shown(text)}")
     return int(text)
+
+
+def frames_done(job: Job, chunks: list[Chunk], scheduler: str | None, check: bool) -> Iterator[Done]:
+    """Denoise chunks here or on a cluster; remarks on the first frames are made here in either case."""
+    remarks = Remarks(chunks[-1].written.stop - chunks[0].first, check=check)
+    if scheduler:
+        remarks.look_ahead(Shot(job.paths, job.how, job.separate), chunks[0].first)
+        yield from denoise_on_cluster(scheduler, job, chunks, look_at_surfaces)
+    else:
+        for chunk in chunks:
+            yield from run(job, chunk, remarks.look)
 
 
 def chosen(sources: list[Path], span: str | None) -> range:

@@ -65,7 +65,7 @@ class Remarks:
 
     def look(self, shot: Shot, index: int, source: ShotFrame) -> None:
         """Look at the next frame; `FileError` where nothing would come of it."""
-        require_surfaces(source.path, source.frame)
+        look_at_surfaces(shot, index, source)
         if self._is_first:
             print(described(shot.reading, source))
             self._is_first = False
@@ -79,6 +79,11 @@ class Remarks:
             self._warn()
             self._inspection = Inspection()  # what it held is free
 
+    def look_ahead(self, shot: Shot, first: int) -> None:
+        """Look at some frames of a shot that others will denoise, from the first one on."""
+        for index in range(first, min(first + FIRST, len(shot))):
+            self.look(shot, index, shot.read(index))
+
     def _warn(self) -> None:
         report = self._inspection.report()
         found = [f"{finding.field}: {finding.what}; {finding.cure}" for finding in report.findings]
@@ -88,6 +93,11 @@ class Remarks:
             warnings.warn(line, stacklevel=2)
         if found:
             warnings.warn("told from the first frames; svgf-cl check says more, --no-check leaves it out", stacklevel=2)
+
+
+def look_at_surfaces(shot: Shot, index: int, source: ShotFrame) -> None:
+    """Raise `FileError` where nothing would come of a frame."""
+    require_surfaces(source.path, source.frame)
 
 
 def require_surfaces(path: Path, frame: Frame) -> None:

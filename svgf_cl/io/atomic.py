@@ -8,12 +8,14 @@ import os
 import re
 import socket
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from svgf_cl.errors import FileError
+
+ATTEMPTS = 10  # to act in a folder that other processes remove again
 
 
 @contextmanager
@@ -32,8 +34,7 @@ def written_whole(path: Path) -> Iterator[Path]:
     aside = path.with_name(f".{path.name}.{socket.gethostname()}-{os.getpid()}.tmp")
     made: list[Path] = []
     try:
-        made = _make(path.parent)
-        aside.touch()
+        made = _in_made(path.parent, aside.touch)
         yield aside
         _sync(aside)
         os.replace(aside, path)
@@ -69,14 +70,10 @@ def output_folder(path: Path) -> Path:
     FileError
         Where it cannot be made or written to.
     """
-    made: list[Path] = []
     try:
-        made = _make(path)
-        try_to_write(path)
+        _remove(_in_made(path, lambda: try_to_write(path)))
     except OSError as error:
         raise FileError(f"{path}: cannot be a folder for the output ({error.strerror or error})") from error
-    finally:
-        _remove(made)
     if path.is_dir():
         _delete_leftovers(path)
     return path
@@ -134,6 +131,28 @@ def read_json(path: Path) -> Any:
         return json.loads(path.read_bytes())
     except RecursionError as error:
         raise ValueError("nested too deeply") from error
+
+
+def _in_made(folder: Path, act: Callable[[], object]) -> list[Path]:
+    """Make a folder as `_make` does and act in it; return what was made, which is gone if it raises.
+
+    Tasks of a farm begin at the same time, and each removes again what it made to try it out: where another one did so
+    in between, all is done once more.
+    """
+    made: list[Path] = []
+    try:
+        for left in reversed(range(ATTEMPTS)):
+            try:
+                made += _make(folder)
+                act()
+                break
+            except FileNotFoundError:
+                if not left:
+                    raise
+    except BaseException:
+        _remove(made)
+        raise
+    return made
 
 
 def _make(folder: Path) -> list[Path]:

@@ -6,7 +6,7 @@ import pickle
 
 import pytest
 
-from svgf_cl import ArgumentError, DeviceError, FileError, FrameError, SettingsError, SvgfError
+from svgf_cl import ArgumentError, DeviceError, FileError, FrameError, SchedulerError, SettingsError, SvgfError
 
 
 @pytest.mark.parametrize(
@@ -14,7 +14,7 @@ from svgf_cl import ArgumentError, DeviceError, FileError, FrameError, SettingsE
     [
         FrameError("depth", "shape (3, 4)", "shape (4, 3)"),
         ArgumentError("out", "float32", "float64"),
-        *(kind("a message") for kind in (SvgfError, SettingsError, DeviceError, FileError)),
+        *(kind("a message") for kind in (SvgfError, SettingsError, DeviceError, FileError, SchedulerError)),
     ],
 )
 def test_an_error_is_sent_to_another_process_whole(error: SvgfError) -> None:

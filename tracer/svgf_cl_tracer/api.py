@@ -3,12 +3,12 @@
 from .builtin import BUILTIN, builtin_scene
 from .camera import Camera, CameraPath
 from .errors import SceneError
+from .fingerprint import tracer_version
 from .loading import load_scene
 from .panorama import load_environment
 from .references import Goal, References
 from .render import frame_identity, render_frame, render_sequence
 from .scene import Scene
-from .scheduling import scheduled
 from .shot import Shot
 from .sky import Environment
 
@@ -28,5 +28,5 @@ __all__ = [
     "load_scene",
     "render_frame",
     "render_sequence",
-    "scheduled",
+    "tracer_version",
 ]

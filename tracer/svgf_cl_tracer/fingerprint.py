@@ -6,10 +6,11 @@ import dataclasses
 import functools
 import hashlib
 from collections.abc import Iterator
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
+
+from svgf_cl.fingerprint import code_version
 
 LIBRARIES = ("embreex", "numba", "numpy")
 # They ask for pictures, and have no part in what a picture is.
@@ -35,7 +36,7 @@ def tracer_version() -> str:
     folder = Path(__file__).parent
     paths = [path for path in sorted(folder.rglob("*.py")) if path.relative_to(folder).parts[0] not in ASKING]
     sources = [(path.name, path.read_text(encoding="utf-8")) for path in paths]
-    return fingerprint([sources, [(name, version(name)) for name in LIBRARIES]])
+    return code_version(sources, LIBRARIES)
 
 
 def _digest(thing: object, known: dict[int, bytes]) -> bytes:

@@ -18,6 +18,7 @@ from svgf_cl.frame import Frame
 from svgf_cl.io import cache
 from svgf_cl.io.exr import write_channels
 from svgf_cl.io.frames import channels_of
+from svgf_cl.scheduling import Map, here
 
 from .checkpoints import Checkpoints
 from .errors import SceneError
@@ -25,7 +26,6 @@ from .estimate import Estimate
 from .fingerprint import fingerprint, tracer_version
 from .paths import Radiance
 from .render import REFERENCE, Sampler, in_threads, render_frame, tiles
-from .scheduling import Map, here
 from .shading import sum_up
 from .shot import Shot
 from .vectors import Float32

@@ -13,7 +13,7 @@ import pytest
 from svgf_cl.io.exr import read_channels
 from svgf_cl.io.frames import frame_path, read_frame, write_frame
 from svgf_cl.io.synthetic import room_frames
-from tests.command_line import assert_goes_on, contents, run
+from tests.command_line import assert_goes_on, contents, run, run_signalled
 
 
 @pytest.fixture(scope="module")
@@ -35,6 +35,19 @@ def denoised(rendered: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_killed_run_is_gone_on_with(rendered: Path, tmp_path: Path) -> None:
     assert_goes_on(("denoise", rendered, "--png"), (1, 2), tmp_path)
+
+
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGINT"])
+def test_a_terminated_run_ends_in_one_line_with_whole_files_alone(
+    name: str, rendered: Path, denoised: Path, tmp_path: Path
+) -> None:
+    ended = run_signalled(name, 2, "denoise", rendered, "--png", "-o", tmp_path / "out")
+    assert ended.returncode == 130
+    assert ended.stderr == "svgf-cl: interrupted\n"
+    done = {name: content for name, content in contents(denoised).items() if "0000" in name or "0001" in name}
+    assert contents(tmp_path / "out") == done
+    assert run("denoise", rendered, "--png", "-o", tmp_path / "out") == 0
+    assert contents(tmp_path / "out") == contents(denoised)
 
 
 def test_denoise_keeps_only_what_it_would_make(rendered: Path, denoised: Path, tmp_path: Path, capsys) -> None:

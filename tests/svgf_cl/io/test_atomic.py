@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from svgf_cl import FileError
+from svgf_cl.io import atomic
 from svgf_cl.io.atomic import output_file, output_folder, read_json, written_whole
 from svgf_cl.io.display import write_image
 from svgf_cl.io.panels import write_preview
@@ -170,3 +171,29 @@ def test_a_file_that_is_a_folder_is_refused(tmp_path: Path) -> None:
     assert output_file(tmp_path / "a" / "b.png") == tmp_path / "a" / "b.png"
     with pytest.raises(FileError, match="expected a file to write, got a folder"):
         output_file(tmp_path)
+
+
+def test_a_folder_that_another_process_removes_in_between_is_made_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As tasks of a farm do that begin at the same time."""
+    make, left = atomic._make, [2]
+
+    def made_and_removed(folder: Path) -> list[Path]:
+        made = make(folder)
+        left[0] -= 1
+        if left[0] >= 0:
+            folder.rmdir()
+        return made
+
+    monkeypatch.setattr(atomic, "_make", made_and_removed)
+    assert not atomic.output_folder(tmp_path / "a" / "b").exists()
+    left[0] = 2
+    atomic.write_text(tmp_path / "a" / "b" / "file", "text")
+    assert (tmp_path / "a" / "b" / "file").read_text() == "text"
+    left[0] = 1000
+    with pytest.raises(FileError, match="cannot be a folder for the output"):
+        atomic.output_folder(tmp_path / "c" / "d")
+    with pytest.raises(FileError, match="cannot be written"):
+        atomic.write_text(tmp_path / "c" / "d" / "file", "text")
+    assert not (tmp_path / "c").exists()

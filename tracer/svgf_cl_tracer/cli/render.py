@@ -14,11 +14,11 @@ from svgf_cl.cli.options import MAX_FRAMES, Output, Size, parse_size
 from svgf_cl.io.atomic import output_folder
 from svgf_cl.io.frames import frame_path, kept_frame, write_frame
 from svgf_cl.io.sequence import check_leftovers
+from svgf_cl.scheduling import Map, scheduled
 from svgf_cl_tracer.cli.scenes import open_scene, read_sky, require_tracer
 
 if TYPE_CHECKING:
     from svgf_cl_tracer import Goal, References
-    from svgf_cl_tracer.scheduling import Map
 
 CAMERA_HELP = (
     "Position, point looked at, vertical field of view in degrees and, if it is not +Y, the direction that is up: "
@@ -81,7 +81,7 @@ def render(
         Shot,
         frame_identity,
         render_frame,
-        scheduled,
+        tracer_version,
     )
 
     frames = frames or (BUILTIN[scene].frames if scene in BUILTIN else 24)
@@ -97,7 +97,7 @@ def render(
     settings: dict[str, Any] = {"spp": spp, "seed": seed, "jitter": jitter, "bounces": bounces}
     made_from = {number: frame_identity(shot, number, **settings) for number in range(frames)}
     missing = [n for n in range(frames) if kept_frame(frame_path(folder, n), made_from[n]) is None]
-    with scheduled(scheduler) as run:
+    with scheduled(scheduler, tracer_version) as run:
         rendered = tracked(run(partial(render_frame, **settings), shot, missing), len(missing), "rendering")
         for number, frame in zip(missing, rendered, strict=True):
             write_frame(frame_path(folder, number), frame, made_from[number])
