@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from svgf_cl.filters import DEFAULT
 from svgf_cl.io.exr import read_channels, read_image
 from svgf_cl.io.sequence import find_frames
 from svgf_cl.io.shot import Shot, ShotFrame
-from svgf_cl.job import Job, Style, in_layer, run, target_paths
+from svgf_cl.job import Chunk, Done, Job, Style, in_layer, run, target_paths
 from svgf_cl.shot_denoiser import Method
 from tests.renderers import BLENDER_HEADER, NUMBERS, blender, moments, written
 
@@ -28,13 +29,19 @@ def job_of(sources: list[Path], folder: Path, **more: object) -> Job:
     return Job(tuple(sources), tuple(target_paths(sources, folder)), method, **more)  # type: ignore[arg-type]
 
 
+def run_all(job: Job) -> Iterator[Done]:
+    """Denoise a whole shot."""
+    count = len(job.paths)
+    return run(job, Chunk(0, range(count), count))
+
+
 def test_each_frame_is_written_when_it_is_done(sources: list[Path], tmp_path: Path) -> None:
-    for number, each in zip(NUMBERS, run(job_of(sources, tmp_path / "out")), strict=True):
+    for number, each in zip(NUMBERS, run_all(job_of(sources, tmp_path / "out")), strict=True):
         assert each.target == tmp_path / "out" / f"shot_{number:04d}.exr"
         assert each.target.exists()
         assert not each.kept
         assert all(time >= 0 for time in each.times.values())
-    assert all(each.kept for each in run(job_of(sources, tmp_path / "out")))
+    assert all(each.kept for each in run_all(job_of(sources, tmp_path / "out")))
 
 
 def test_frames_that_warm_up_are_looked_at_and_not_written(sources: list[Path], tmp_path: Path) -> None:
@@ -44,35 +51,35 @@ def test_frames_that_warm_up_are_looked_at_and_not_written(sources: list[Path], 
         assert source.path == shot.paths[index]
         seen.append(index)
 
-    done = list(run(job_of(sources, tmp_path / "out"), warm_up=2, look=look))
-    assert seen == [0, 1, 2]
+    done = list(run(job_of(sources, tmp_path / "out"), Chunk(1, range(2, 3), 3), look))
+    assert seen == [1, 2]
     assert [each.target.name for each in done] == ["shot_0003.exr"]
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["shot_0003.exr"]
 
 
-def test_a_part_of_a_job_does_its_frames_alone(sources: list[Path], tmp_path: Path) -> None:
-    whole = job_of(sources, tmp_path / "out")
-    part = whole.part(range(1, 3))
-    assert part.paths == whole.paths[1:]
-    assert part.targets == whole.targets[1:]
-    assert [each.target for each in run(part)] == list(whole.targets[1:])
+def test_a_chunk_with_all_of_its_past_is_as_of_the_whole_shot(sources: list[Path], tmp_path: Path) -> None:
+    whole = [each.target.read_bytes() for each in run_all(job_of(sources, tmp_path / "whole"))]
+    job = job_of(sources, tmp_path / "chunks")
+    for chunk in (Chunk(0, range(2), 2), Chunk(0, range(2, 3), 3)):
+        assert [each.target for each in run(job, chunk)] == list(job.targets[chunk.written.start : chunk.written.stop])
+    assert [target.read_bytes() for target in job.targets] == whole
 
 
 def test_a_picture_alone_is_written(sources: list[Path], tmp_path: Path) -> None:
-    (first, *_) = run(job_of(sources, tmp_path / "out", style=Style(plain=True, png=True)))
+    (first, *_) = run_all(job_of(sources, tmp_path / "out", style=Style(plain=True, png=True)))
     assert read_channels(first.target).keys() == {"R", "G", "B"}
     assert first.target.with_suffix(".png").exists()
 
 
 def test_light_passes_may_be_left_alone(sources: list[Path], tmp_path: Path) -> None:
-    (first, *_) = run(job_of(sources, tmp_path / "out", method={"lights": False}))
+    (first, *_) = run_all(job_of(sources, tmp_path / "out", method={"lights": False}))
     before, after = read_channels(sources[0]), read_channels(first.target)
     different = {name for name, plane in before.items() if plane.tobytes() != after[name].tobytes()}
     assert different == {f"ViewLayer.Combined.{c}" for c in "RGB"}
 
 
 def test_the_standard_error_lies_beside_the_picture(sources: list[Path], tmp_path: Path) -> None:
-    (first, *_) = run(job_of(sources, tmp_path / "out", settings={"standard_error": True}))
+    (first, *_) = run_all(job_of(sources, tmp_path / "out", settings={"standard_error": True}))
     error = read_channels(first.target)["standard_error"]
     assert np.isfinite(error).all()
     assert error.any()
@@ -108,6 +115,6 @@ def test_no_picture_replaces_a_frame_by_whatever_way_it_is_named(sources: list[P
 
 def test_a_run_leaves_its_input_as_it_was(sources: list[Path], tmp_path: Path) -> None:
     before = [path.read_bytes() for path in sources]
-    done = list(run(job_of(sources, tmp_path / "out")))
+    done = list(run_all(job_of(sources, tmp_path / "out")))
     assert [path.read_bytes() for path in sources] == before
     assert read_image(done[0].target).windows == read_image(sources[0]).windows
