@@ -16,7 +16,8 @@ from svgf_cl.scheduling import scheduled
 from svgf_cl.shot_walk import Look
 
 # Frames that are filtered before the first one that is written. With so many, the picture at a join differs from that
-# of an uncut shot by at most a tenth of what changes from one frame to the next anyway (docs/farm.md has the table).
+# of an uncut shot by an eighth at most of what changes from one frame to the next anyway, where rays are jittered
+# (docs/farm.md has the table).
 WARM_UP = 32
 # Frames of a chunk on a cluster: with `WARM_UP` more, half as much work again as for the shot in one piece.
 CHUNK = 64

@@ -115,7 +115,7 @@ def denoise(
     fields = {"albedo": albedo, "normal": normal, "depth": depth, "motion": motion, "id": id_}
     if bool(frames) == bool(color):
         raise SvgfError(f"denoise: expected either FRAMES or --color, got {'both' if color else 'neither'}")
-    sources = find_frames(frames or [color], allow_gaps=allow_gaps)
+    sources = find_frames([*frames, *([color] if color else [])], allow_gaps=allow_gaps)
     selected = chosen(sources, span)
     folder = output.parent if has_number(output) else output
     output_folder(folder)
@@ -157,14 +157,18 @@ def parse_look_ahead(text: str | None) -> int | None:
 
 
 def frames_done(job: Job, chunks: list[Chunk], scheduler: str | None, check: bool) -> Iterator[Done]:
-    """Denoise chunks here or on a cluster; remarks on the first frames are made here in either case."""
-    remarks = Remarks(chunks[-1].written.stop - chunks[0].first, check=check)
+    """Denoise chunks here or on a cluster, with remarks on the first frames, which are made here."""
+    places = range(chunks[0].first, chunks[-1].written.stop)
+    remarks = Remarks(len(places), check=check)
+    if len(chunks) == 1 and not scheduler:
+        yield from run(job, chunks[0], remarks.look)
+        return
+    remarks.look_ahead(Shot(job.paths, job.how, job.separate), places)
     if scheduler:
-        remarks.look_ahead(Shot(job.paths, job.how, job.separate), chunks[0].first)
         yield from denoise_on_cluster(scheduler, job, chunks, look_at_surfaces)
     else:
         for chunk in chunks:
-            yield from run(job, chunk, remarks.look)
+            yield from run(job, chunk, look_at_surfaces)
 
 
 def chosen(sources: list[Path], span: str | None) -> range:

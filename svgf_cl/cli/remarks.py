@@ -79,9 +79,9 @@ class Remarks:
             self._warn()
             self._inspection = Inspection()  # what it held is free
 
-    def look_ahead(self, shot: Shot, first: int) -> None:
-        """Look at some frames of a shot that others will denoise, from the first one on."""
-        for index in range(first, min(first + FIRST, len(shot))):
+    def look_ahead(self, shot: Shot, places: range) -> None:
+        """Look at the first of the frames of a shot that is denoised in chunks."""
+        for index in places[: max(1, self._left)]:
             self.look(shot, index, shot.read(index))
 
     def _warn(self) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from svgf_cl import Frame, open_sequence
+from svgf_cl.cli import remarks
 from svgf_cl.compare.metrics import flip, psnr, ssim, why_no_flip
 from svgf_cl.io.display import display
 from svgf_cl.io.exr import read_channels, read_image, write_channels
@@ -17,6 +18,7 @@ from svgf_cl.io.frames import read_frame, write_frame
 from svgf_cl.io.pictures import read_picture
 from svgf_cl.io.readers import READERS
 from svgf_cl.io.reading import ReadAs, Reading, stacked
+from svgf_cl.io.synthetic import room_frames
 from svgf_cl.io.window import Window
 from svgf_cl.prefilter import has_noisy_depth
 from tests.command_line import NAMES, contents, run
@@ -461,3 +463,20 @@ def added_up(path: Path, planes: dict[str, np.ndarray], reading: Reading) -> np.
         factor = stacked(path, planes, light.factor) if light.factor else np.float32(1)
         total += stacked(path, planes, light.channels) * factor
     return total
+
+
+def test_the_first_frames_of_a_shot_in_chunks_are_checked_once_and_in_order(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Warm-ups go over the same frames again, which no motion leads to."""
+    frames = list(room_frames((18, 32), 10))
+    (tmp_path / "shot").mkdir()
+    for number, frame in enumerate(frames):
+        write_frame(tmp_path / "shot" / f"frame.{number:04d}.exr", frame)
+    checked = []
+    monkeypatch.setattr(remarks.Inspection, "add", lambda self, frame: checked.append(frame.color))
+    for chunk in (("--chunk", "2", "--warm-up", "2"), ()):
+        checked.clear()
+        assert run("denoise", tmp_path / "shot", "-o", tmp_path / "out", *chunk) == 0
+        assert len(checked) == remarks.FIRST
+        np.testing.assert_array_equal(checked, [frame.color for frame in frames[: remarks.FIRST]])
