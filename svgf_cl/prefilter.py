@@ -58,7 +58,7 @@ class Prefilter:
     is_noisy : bool
         Whether depth is filtered, too; albedo always is.
     is_followed : bool
-        Whether motion is known, so that factors of lights, and light that is seen directly, are filtered with the depth.
+        Whether motion is known, so that factors of lights, and light that is seen directly, are filtered like depth.
         They hold textures, which would be smeared if they moved and motion were 0, as with Blender's motion blur.
     share : float
         As of `Denoisers`.
@@ -100,7 +100,8 @@ class Prefilter:
         normal = 2.0 * self._filtered("normal", frame, 0.5 * frame.normal + 0.5) - 1.0
         length = np.linalg.norm(normal, axis=-1, keepdims=True)
         is_hole = ~frame.normal.any(axis=-1, keepdims=True) & (length > LEAST_HIT)
-        return np.where(is_hole, normal / np.maximum(length, LEAST_HIT), frame.normal)
+        filled: Array = np.where(is_hole, normal / np.maximum(length, LEAST_HIT), frame.normal)
+        return filled
 
     def reset(self) -> None:
         """Forget the past, as at a cut."""
@@ -110,14 +111,15 @@ class Prefilter:
         """A guide (H, W, 3), filtered as light that lies on no surface."""
         depth, motion = self._flat[..., 2], frame.motion[..., :2]
         whole = Frame(color=np.asarray(value, np.float32), normal=self._flat, depth=depth, motion=motion)
-        smooth: Array = np.clip(self._denoisers.denoise(name, whole), *extremes(whole.color))
+        least, most = extremes(whole.color)
+        smooth: Array = np.clip(self._denoisers.denoise(name, whole), least, most)
         return smooth
 
 
 def extremes(value: Array) -> tuple[Array, Array]:
-    """The least and the greatest value (H, W, C) of each pixel and its eight neighbours: what is filtered stays between.
+    """The least and the greatest value (H, W, C) of each pixel and its eight neighbours.
 
-    So nothing is left behind where motion is wrong.
+    What is filtered stays between them, so nothing is left behind where motion is wrong.
     """
     padded = np.pad(value, ((1, 1), (1, 1), (0, 0)), mode="edge")
     found = []

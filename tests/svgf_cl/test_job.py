@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from svgf_cl.filters import DEFAULT
 from svgf_cl.io.exr import read_channels, read_image
 from svgf_cl.io.sequence import find_frames
 from svgf_cl.io.shot import Shot, ShotFrame
-from svgf_cl.job import Chunk, Job, Style, in_layer, run, target_paths
+from svgf_cl.job import Chunk, Done, Job, Style, in_layer, run, target_paths
 from svgf_cl.shot_denoiser import Method
 from tests.renderers import BLENDER_HEADER, NUMBERS, blender, moments, written
 
@@ -28,17 +29,19 @@ def job_of(sources: list[Path], folder: Path, **more: object) -> Job:
     return Job(tuple(sources), tuple(target_paths(sources, folder)), method, **more)  # type: ignore[arg-type]
 
 
-def whole(job: Job) -> tuple[Job, Chunk]:
-    return job, Chunk(0, range(len(job.paths)), len(job.paths))
+def run_all(job: Job) -> Iterator[Done]:
+    """Denoise a whole shot."""
+    count = len(job.paths)
+    return run(job, Chunk(0, range(count), count))
 
 
 def test_each_frame_is_written_when_it_is_done(sources: list[Path], tmp_path: Path) -> None:
-    for number, each in zip(NUMBERS, run(*whole(job_of(sources, tmp_path / "out"))), strict=True):
+    for number, each in zip(NUMBERS, run_all(job_of(sources, tmp_path / "out")), strict=True):
         assert each.target == tmp_path / "out" / f"shot_{number:04d}.exr"
         assert each.target.exists()
         assert not each.kept
         assert all(time >= 0 for time in each.times.values())
-    assert all(each.kept for each in run(*whole(job_of(sources, tmp_path / "out"))))
+    assert all(each.kept for each in run_all(job_of(sources, tmp_path / "out")))
 
 
 def test_frames_that_warm_up_are_looked_at_and_not_written(sources: list[Path], tmp_path: Path) -> None:
@@ -48,48 +51,48 @@ def test_frames_that_warm_up_are_looked_at_and_not_written(sources: list[Path], 
         assert source.path == shot.paths[index]
         seen.append(index)
 
-    done = list(run(job_of(sources, tmp_path / "out"), Chunk(0, range(2, 3), 3), look))
-    assert seen == [0, 1, 2]
+    done = list(run(job_of(sources, tmp_path / "out"), Chunk(1, range(2, 3), 3), look))
+    assert seen == [1, 2]
     assert [each.target.name for each in done] == ["shot_0003.exr"]
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["shot_0003.exr"]
 
 
-def test_a_chunk_of_a_job_writes_its_frames_alone(sources: list[Path], tmp_path: Path) -> None:
-    job = job_of(sources, tmp_path / "out")
-    assert [each.target for each in run(job, Chunk(1, range(1, 3), 3))] == list(job.targets[1:])
+def test_a_chunk_with_all_of_its_past_is_as_of_the_whole_shot(sources: list[Path], tmp_path: Path) -> None:
+    whole = [each.target.read_bytes() for each in run_all(job_of(sources, tmp_path / "whole"))]
+    job = job_of(sources, tmp_path / "chunks")
+    for chunk in (Chunk(0, range(2), 2), Chunk(0, range(2, 3), 3)):
+        assert [each.target for each in run(job, chunk)] == list(job.targets[chunk.written.start : chunk.written.stop])
+    assert [target.read_bytes() for target in job.targets] == whole
 
 
 @pytest.mark.parametrize("frames", [1, 2, 0])
-def test_later_frames_make_it_better(frames: int, sources: list[Path], tmp_path: Path) -> None:
-    """Without noise a picture is what it was; a chunk that reads so far ahead is as the whole shot."""
+def test_later_frames_make_it_another_one(frames: int, sources: list[Path], tmp_path: Path) -> None:
+    """A chunk that reads so far ahead makes what the whole shot does."""
     job = job_of(sources, tmp_path / "out", look_ahead=frames)
-    done = list(run(*whole(job)))
-    assert [each.target for each in done] == list(job.targets)
-    first = read_channels(job.targets[0])
-    (alone,) = run(job_of(sources, tmp_path / "alone", look_ahead=frames), Chunk(0, range(1), 1 + (frames or 2)))
+    assert [each.target for each in run_all(job)] == list(job.targets)
+    first, forward = read_channels(job.targets[0]), tmp_path / "forward"
+    list(run_all(job_of(sources, forward)))
+    assert any((first[name] != plane).any() for name, plane in read_channels(forward / "shot_0001.exr").items())
     if frames != 1:  # a block that is cut off begins its backward run elsewhere
+        (alone,) = run(job_of(sources, tmp_path / "alone", look_ahead=frames), Chunk(0, range(1), 3))
         assert all((first[name] == plane).all() for name, plane in read_channels(alone.target).items())
-    list(run(*whole(job_of(sources, tmp_path / "forward"))))
-    assert any(
-        (first[name] != plane).any() for name, plane in read_channels(tmp_path / "forward" / "shot_0001.exr").items()
-    )
 
 
 def test_a_picture_alone_is_written(sources: list[Path], tmp_path: Path) -> None:
-    (first, *_) = run(*whole(job_of(sources, tmp_path / "out", style=Style(plain=True, png=True))))
+    (first, *_) = run_all(job_of(sources, tmp_path / "out", style=Style(plain=True, png=True)))
     assert read_channels(first.target).keys() == {"R", "G", "B"}
     assert first.target.with_suffix(".png").exists()
 
 
 def test_light_passes_may_be_left_alone(sources: list[Path], tmp_path: Path) -> None:
-    (first, *_) = run(*whole(job_of(sources, tmp_path / "out", method={"lights": False})))
+    (first, *_) = run_all(job_of(sources, tmp_path / "out", method={"lights": False}))
     before, after = read_channels(sources[0]), read_channels(first.target)
     different = {name for name, plane in before.items() if plane.tobytes() != after[name].tobytes()}
     assert different == {f"ViewLayer.Combined.{c}" for c in "RGB"}
 
 
 def test_the_standard_error_lies_beside_the_picture(sources: list[Path], tmp_path: Path) -> None:
-    (first, *_) = run(*whole(job_of(sources, tmp_path / "out", settings={"standard_error": True})))
+    (first, *_) = run_all(job_of(sources, tmp_path / "out", settings={"standard_error": True}))
     error = read_channels(first.target)["standard_error"]
     assert np.isfinite(error).all()
     assert error.any()
@@ -125,6 +128,6 @@ def test_no_picture_replaces_a_frame_by_whatever_way_it_is_named(sources: list[P
 
 def test_a_run_leaves_its_input_as_it_was(sources: list[Path], tmp_path: Path) -> None:
     before = [path.read_bytes() for path in sources]
-    done = list(run(*whole(job_of(sources, tmp_path / "out"))))
+    done = list(run_all(job_of(sources, tmp_path / "out")))
     assert [path.read_bytes() for path in sources] == before
     assert read_image(done[0].target).windows == read_image(sources[0]).windows

@@ -166,7 +166,7 @@ def test_whatever_a_field_holds_the_file_is_read_or_refused(
     tmp_path_factory: pytest.TempPathFactory, field: str, value: Any
 ) -> None:
     entry = {"frame": 3, "to_world": TO_WORLD, **FOV, "center": [1, 2], field: value}
-    path = written(tmp_path_factory.mktemp("cameras"), [entry])
+    path = written(tmp_path_factory.mktemp("cameras"), [entry])  # in the folder above others, it would be theirs
     try:
         (camera,) = read_cameras(path).values()
     except FileError:
