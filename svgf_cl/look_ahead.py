@@ -149,19 +149,24 @@ def both_ways(walk: Walk[Item], cuts: Sequence[int], ahead: int | None) -> Itera
 def block(walk: Walk[Item], start: int, stop: int, end: int) -> Iterator[tuple[Item, dict[Key, Plane]]]:
     """The frames from `start` to before `stop`; the backward run begins at the frame before `end`."""
     with tempfile.TemporaryDirectory(prefix="svgf_cl-") as folder:
-        walk.begin(backward=True)
-        later: Item | None = None  # what the first one's motion leads to plays no part, for it has no history
-        for index in reversed(range(start, end)):
-            item = walk.item(index)
-            motion = None if later is None else walk.to_next(index, item, later)
-            estimates = walk.estimates(item, motion, backward=True)
+        for index, estimates in backward_run(walk, start, end):
             if index < stop:
                 save(file_of(folder, index), estimates)
-            later = item
         for index in range(start, stop):
             item, after = walk.item(index), load(file_of(folder, index))
             before = walk.estimates(item, None, backward=False)
             yield item, {key: mean(one, after[key]) if key in after else one.picture for key, one in before.items()}
+
+
+def backward_run(walk: Walk[Item], start: int, end: int) -> Iterator[tuple[int, Mapping[Key, Estimate]]]:
+    """Each frame from that before `end` down to `start`, and what the backward filter makes of it."""
+    walk.begin(backward=True)
+    later: Item | None = None  # what the first one's motion leads to plays no part, for it has no history
+    for index in reversed(range(start, end)):
+        item = walk.item(index)
+        motion = None if later is None else walk.to_next(index, item, later)
+        yield index, walk.estimates(item, motion, backward=True)
+        later = item
 
 
 @dataclass(frozen=True, eq=False)
@@ -239,7 +244,7 @@ def load(path: Path) -> dict[Key, Estimate]:
 
 def file_of(folder: str, index: int) -> Path:
     """Where the backward estimate of a frame is kept."""
-    return Path(folder) / f"{index}"
+    return Path(folder) / f"{index}.parts"
 
 
 def mean(one: Estimate, other: Estimate) -> Plane:

@@ -154,8 +154,12 @@ class Shot(Sequence[Frame]):
         return ShotFrame(path, image, moved(frame, own, self.window), lights)
 
     def typical(self) -> ShotFrame:
-        """A frame that tells what holds for all of the shot: the second one, if there is one, as it has motion."""
-        return self.read(min(1, len(self) - 1))
+        """A frame that tells what holds for all of the shot: the second one, if it can be read, as it has motion."""
+        first = self.read(0)
+        try:
+            return self.read(1) if len(self) > 1 else first
+        except FileError:  # which is told when its turn comes
+            return first
 
     def motion_to_next(self, source: ShotFrame) -> Picture | None:
         """The motion of a frame to the next one, (H, W, 2 or 3), where its file or the cameras tell it."""

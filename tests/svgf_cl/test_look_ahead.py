@@ -172,7 +172,7 @@ class TestMemory:
     def test_files_of_a_block_alone_are_there_and_none_are_left(self, tmp_path: Path) -> None:
         shots = look_ahead(ROOM, Denoiser(SMALL), Denoiser(SMALL), ahead=3)
         next(shots)
-        assert len(list(tmp_path.rglob("*.npy"))) == 3
+        assert len(list(tmp_path.rglob("*.parts"))) == 3
         shots.close()
         assert not list(tmp_path.iterdir())
 
@@ -181,7 +181,7 @@ class TestMemory:
             raise OSError(28, "No space left on device")
 
         monkeypatch.setattr(np, "save", full)
-        with pytest.raises(FileError, match=r"npy: cannot be written \(No space left on device\); set TMPDIR"):
+        with pytest.raises(FileError, match=r"parts: cannot be written \(No space left on device\); set TMPDIR"):
             pictures(ROOM[:2])
 
 
