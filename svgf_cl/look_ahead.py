@@ -89,7 +89,7 @@ def look_ahead(
     if starts and not 0 < starts[0] <= starts[-1] < len(frames):
         raise ArgumentError("look_ahead(cuts)", f"indices in 1..{len(frames) - 1}", shown(starts))
     walk = FramesWalk(frames, forward, backward, settings, next_motion)
-    return (pictures[PICTURE] for _, pictures in both_ways(walk, starts, ahead))
+    return map(lambda found: found[1][PICTURE], both_ways(walk, starts, ahead))  # which holds no frame meanwhile
 
 
 def check_denoisers(forward: Denoiser, backward: Denoiser) -> TemporalFilter:
