@@ -15,10 +15,13 @@ from svgf_cl.io.readers.conversions import Array, depth_of_hits, hashes, without
 from svgf_cl.io.readers.passes import place
 from svgf_cl.io.readers.reader import Light, Pass, Reader, has_attribute
 
+STAMP = {"Camera", "Frame", "RenderTime", "Scene"}  # what Blender says in the header of any file
+
 
 def recognises(image: Image) -> bool:
     """Whether Blender says so, or a view layer has a pass called as Blender calls the picture."""
-    return has_attribute(image, "BlenderMultiChannel") or any(place(name).name == "combined" for name in image.planes)
+    said = has_attribute(image, "BlenderMultiChannel") or image.parts[0].attributes.keys() >= STAMP
+    return said or any(place(name).name == "combined" for name in image.planes)
 
 
 def to_next(vector: Array) -> Array:
@@ -32,7 +35,7 @@ BLENDER = Reader(
     title="Blender (Cycles), OpenEXR MultiLayer",
     recognises=recognises,
     passes={
-        "color": (Pass(("Combined", "Image"), 3),),
+        "color": (Pass(("Combined", "Image", ""), 3),),  # without a name: a file of one pass, of the compositor
         "albedo": (Pass(("Denoising Albedo",), 3),),
         "normal": (Pass(("Normal",), 3),),
         "depth": (Pass(("Depth",), 1, depth_of_hits),),
