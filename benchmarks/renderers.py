@@ -36,7 +36,7 @@ from svgf_cl.io.reading import ReadAs, Reading, stacked
 from svgf_cl.io.sequence import find_frames, number_of
 from svgf_cl.io.shot import Shot
 from svgf_cl.io.window import placed
-from svgf_cl.job import Job, made
+from svgf_cl.job import made_forward
 from svgf_cl.shot_denoiser import Method
 
 SHOWN = ("psnr", "ssim", "flip", "temporal")
@@ -135,10 +135,11 @@ def gain(folder: Path) -> Gain:
 
 def pictures(paths: Sequence[Path], how: ReadAs) -> Iterator[tuple[Path, Linear, Linear]]:
     """Each frame's picture before and after, on the display window."""
-    shot, job = Shot(paths, how), Job(tuple(paths), (), Method(DEFAULT()), how)
-    for path, frame in zip(paths, made(shot, job, look=None), strict=True):
-        after = placed(frame.denoised.picture, shot.window, frame.source.image.windows.display, 0.0)
-        yield path, shown(path, frame.source.image, shot.reading), after
+    shot = Shot(paths, how)
+    for index, made in made_forward(shot, Method(DEFAULT()), range(len(shot)), look=None):
+        image = made.source.image
+        after = placed(made.denoised.picture, shot.window, image.windows.display, 0.0)
+        yield paths[index], shown(paths[index], image, shot.reading), after
 
 
 def reference(path: Path) -> tuple[Linear, str]:
