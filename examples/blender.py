@@ -109,7 +109,8 @@ def build_scene() -> None:
     scene = bpy.context.scene
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 480, 270, 100
     scene.world = bpy.data.worlds.new("Sky")
-    scene.world.color = (0.25, 0.35, 0.5)
+    scene.world.use_nodes = True
+    scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.25, 0.35, 0.5, 1)
     bpy.ops.mesh.primitive_plane_add(size=20)
     show(tiled(material("Tiles", (0.7, 0.7, 0.65), 0.7)))
     for name, x, color, roughness, inputs in (
@@ -126,7 +127,7 @@ def build_scene() -> None:
     bpy.ops.object.light_add(type="AREA", location=(-3, -3, 4), rotation=(math.radians(45), 0, math.radians(-45)))
     bpy.context.object.data.energy, bpy.context.object.data.size = 400, 1.0
     bpy.ops.object.camera_add(rotation=(math.radians(75), 0, 0))
-    animate(bpy.context.object, "location", (-0.4, -5.5, 2.0), (0.4, -5.5, 2.0))
+    animate(bpy.context.object, "location", (-0.4, -6.3, 2.1), (0.4, -6.3, 2.1))
     scene.camera = bpy.context.object
 
 

@@ -21,7 +21,7 @@ mi.set_variant("scalar_rgb")  # runs everywhere; llvm_ad_rgb and cuda_ad_rgb are
 
 SIZE = 256
 FRAMES = 16
-REFERENCE_SAMPLES = 128
+REFERENCE_SAMPLES = 64
 FOV = 39.3  # degrees
 
 Array = npt.NDArray[np.float32]

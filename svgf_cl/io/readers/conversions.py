@@ -19,7 +19,8 @@ def depth_of_hits(depth: Array) -> Array:
 
 def reflected(albedo: Array) -> Array:
     """Albedo (H, W, 3) of passes that hold the light of lamps where lamps are seen: it is 1 there."""
-    return np.minimum(albedo[..., :3], np.float32(1))
+    limited: Array = np.minimum(albedo[..., :3], np.float32(1))
+    return limited
 
 
 def y_down(vector: Array) -> Array:
