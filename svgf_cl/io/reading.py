@@ -253,6 +253,8 @@ class Reading:
         switches = self.reader.switches
         measured = {"depth", "position", "distance"} & self.sources.keys()  # cameras tell motion by one of them
         written = [field for field in fields if field in self.reader.passes or not measured]
+        if {*REQUIRED} <= {*fields}:  # the picture alone is there, so the file may be of a format that holds no more
+            written = ["color", *written]
         hints = [switches[field] for field in written if field in switches]
         hints += [CAMERAS] if measured and {"depth", "motion"} & set(fields) else []
         unknown = {field: needed(field) for field in fields if self.reader is OWN and field in CHANNEL_NAMES}

@@ -3,7 +3,7 @@
 Conventions, found numerically on frames of Blender 4.2 and 5.0: Vector holds the previous position minus the current
 one in its X and Y, and the current one minus the next in Z and W, in pixels, y up. Depth is the camera's z of the first
 sample, 1e10 where nothing was hit. Normal is in world space, a mean over samples in which a miss counts as 0. Denoising
-Albedo of a sharp mirror is that of what it reflects.
+Albedo of a sharp mirror is that of what it reflects, and of a lamp the light that it emits.
 """
 
 from __future__ import annotations
@@ -11,14 +11,17 @@ from __future__ import annotations
 import numpy as np
 
 from svgf_cl.io.image import Image
-from svgf_cl.io.readers.conversions import Array, depth_of_hits, hashes, without_edges, y_down
+from svgf_cl.io.readers.conversions import Array, depth_of_hits, hashes, reflected, without_edges, y_down
 from svgf_cl.io.readers.passes import place
 from svgf_cl.io.readers.reader import Light, Pass, Reader, has_attribute
+
+STAMP = {"Camera", "Frame", "RenderTime", "Scene"}  # what Blender says in the header of any file
 
 
 def recognises(image: Image) -> bool:
     """Whether Blender says so, or a view layer has a pass called as Blender calls the picture."""
-    return has_attribute(image, "BlenderMultiChannel") or any(place(name).name == "combined" for name in image.planes)
+    said = has_attribute(image, "BlenderMultiChannel") or image.parts[0].attributes.keys() >= STAMP
+    return said or any(place(name).name == "combined" for name in image.planes)
 
 
 def to_next(vector: Array) -> Array:
@@ -32,8 +35,8 @@ BLENDER = Reader(
     title="Blender (Cycles), OpenEXR MultiLayer",
     recognises=recognises,
     passes={
-        "color": (Pass(("Combined", "Image"), 3),),
-        "albedo": (Pass(("Denoising Albedo",), 3),),
+        "color": (Pass(("Combined", "Image", ""), 3),),  # without a name: a file of one pass, of the compositor
+        "albedo": (Pass(("Denoising Albedo",), 3, reflected),),
         "normal": (Pass(("Normal",), 3),),
         "depth": (Pass(("Depth",), 1, depth_of_hits),),
         "motion": (Pass(("Vector",), 2, y_down),),

@@ -17,6 +17,12 @@ def depth_of_hits(depth: Array) -> Array:
     return np.where((depth > 0) & (depth < FAR), depth, np.float32(np.inf))
 
 
+def reflected(albedo: Array) -> Array:
+    """Albedo (H, W, 3) of passes that hold the light of lamps where lamps are seen: it is 1 there."""
+    limited: Array = np.minimum(albedo[..., :3], np.float32(1))
+    return limited
+
+
 def y_down(vector: Array) -> Array:
     """The motion to the previous frame, (H, W, 2), y down, of previous minus current position, y up."""
     moved: Array = vector[..., :2] * np.array([1, -1], np.float32)

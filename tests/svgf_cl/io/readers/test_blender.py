@@ -11,7 +11,19 @@ from svgf_cl import FileError, open_sequence
 from svgf_cl.io.exr import read_image
 from svgf_cl.io.readers import reader_of
 from tests.exr_files import exr_bytes, multipart_bytes
-from tests.renderers import BLENDER_HEADER, Planes, blender, layer, moments, same_frames, truth, written
+from tests.renderers import (
+    BLENDER_HEADER,
+    NUMBERS,
+    Header,
+    Planes,
+    blender,
+    layer,
+    moments,
+    rgb,
+    same_frames,
+    truth,
+    written,
+)
 
 NAMES = ["ViewLayer", "Main Layer", "Ebene.001 ü", "Rendu", "视图层", "A"]
 
@@ -23,6 +35,11 @@ def shot(folder: Path, view_layer: str = "ViewLayer", without: str = " ") -> Pat
 
 def lacking(planes: Planes, name: str) -> Planes:
     return {channel: plane for channel, plane in planes.items() if f".{name}." not in channel}
+
+
+def alone(planes: Planes, name: str) -> Planes:
+    """The channels of a pass, by their components."""
+    return {channel[-1]: plane for channel, plane in planes.items() if channel.split(".")[1] == name}
 
 
 @pytest.mark.parametrize("view_layer", NAMES)
@@ -51,6 +68,34 @@ def test_a_file_may_have_a_part_for_each_pass(tmp_path: Path) -> None:
     frames = open_sequence(tmp_path)
     same_frames(frames, [truth(at) for at in moments()])
     assert [light.filtered for light in frames.reading.lights] == [True, True, False, False]
+
+
+# What Blender writes into the header of every file, where it is not told to leave it out.
+STAMP: Header = dict.fromkeys(("Camera", "Date", "File", "Frame", "RenderTime", "Scene", "Time"), ("string", b"x"))
+
+
+def test_each_pass_may_have_a_file_of_its_own(tmp_path: Path) -> None:
+    """The compositor's File Output node in format OpenEXR names no layer, and calls a plain value V."""
+    names = ("Normal", "Depth", "Vector", "IndexOB", "Denoising Albedo")
+    passes = {name: {at.number: alone(blender(at), name) for at in moments()} for name in names}
+    for number in NUMBERS:
+        passes["Depth"][number] = {"V": passes["Depth"][number]["Z"]}
+        passes["IndexOB"][number] = {"V": passes["IndexOB"][number]["X"]}
+        del passes["Vector"][number]["W"]
+    for name, planes in passes.items():
+        written(tmp_path, planes, STAMP, f"{name}_")
+    written(tmp_path, {at.number: rgb(at.frame.color) for at in moments()}, STAMP, "Image_")
+    fields = zip(("normal", "depth", "motion", "id", "albedo"), passes, strict=True)
+    separate = {field: tmp_path / f"{name}_####.exr" for field, name in fields}
+    frames = open_sequence(tmp_path / "Image_####.exr", separate=separate)
+    assert frames.reading.reader.name == "blender"
+    same_frames(frames, [truth(at, "emission") for at in moments()])
+
+
+def test_a_picture_alone_says_that_there_is_a_format_for_more(tmp_path: Path) -> None:
+    frames = open_sequence(written(tmp_path, {at.number: rgb(at.frame.color) for at in moments()}, STAMP))
+    with pytest.raises(FileError, match=r"expected normal, depth, motion in.*write OpenEXR MultiLayer:.*Data > Z"):
+        frames[0]
 
 
 def test_one_of_several_view_layers_is_read(tmp_path: Path) -> None:

@@ -6,7 +6,15 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from svgf_cl.io.readers.conversions import against_time, along_time, depth_of_hits, hashes, without_edges, y_down
+from svgf_cl.io.readers.conversions import (
+    against_time,
+    along_time,
+    depth_of_hits,
+    hashes,
+    reflected,
+    without_edges,
+    y_down,
+)
 
 
 def test_an_id_between_two_becomes_that_of_a_neighbour() -> None:
@@ -26,6 +34,11 @@ def test_where_nothing_was_hit_depth_is_infinite() -> None:
     depth = np.array([[0.0, -1.0, 1e10, np.inf, np.nan, 2.5, 1e8]], np.float32)
     expected = np.array([[np.inf, np.inf, np.inf, np.inf, np.inf, 2.5, 1e8]], np.float32)
     np.testing.assert_array_equal(depth_of_hits(depth), expected, strict=True)
+
+
+def test_the_albedo_of_a_lamp_is_one() -> None:
+    albedo = np.array([[[0.2, 0.9, 1.0, 0.5], [150.0, 0.0, np.nan, 1.0]]], np.float32)
+    np.testing.assert_array_equal(reflected(albedo), np.array([[[0.2, 0.9, 1.0], [1.0, 0.0, np.nan]]], np.float32))
 
 
 def test_motion_points_down_and_back() -> None:
