@@ -209,6 +209,8 @@ def result(shot: Shot, source: ShotFrame, denoised: Denoised, style: Style) -> I
         planes[STANDARD_ERROR] = placed(denoised.standard_error, shot.window, own, 0.0)
     if style.layer:
         planes = {in_layer(name, shot.reading.view_layer, style.layer): plane for name, plane in planes.items()}
+        if there := planes.keys() & source.image.planes.keys():
+            raise FileError(f"{source.path}: expected no layer {style.layer!r} yet, found {min(there)}; choose another")
     return denoised_file(planes, source.image, beside=shot.reading.picture[0], plain=style.plain)
 
 

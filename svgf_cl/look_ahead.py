@@ -89,7 +89,15 @@ def look_ahead(
     if starts and not 0 < starts[0] <= starts[-1] < len(frames):
         raise ArgumentError("look_ahead(cuts)", f"indices in 1..{len(frames) - 1}", shown(starts))
     walk = FramesWalk(frames, forward, backward, settings, next_motion)
-    return map(lambda found: found[1][PICTURE], both_ways(walk, starts, ahead))  # which holds no frame meanwhile
+    return pictures_of(both_ways(walk, starts, ahead))
+
+
+def pictures_of(found: Iterator[tuple[Frame, dict[Key, Plane]]]) -> Iterator[Plane]:
+    """The pictures among what was found of frames; it holds no frame itself."""
+    for each in found:
+        picture = each[1][PICTURE]
+        del each
+        yield picture
 
 
 def check_denoisers(forward: Denoiser, backward: Denoiser) -> TemporalFilter:

@@ -57,7 +57,7 @@ def check(
     for index in tracked(range(len(shot)), len(shot), "checking"):
         source = shot.read(index)
         if not last:
-            print(described(shot.reading, source))
+            print(described(shot, source))
         if index in shot.cuts:
             inspection.cut()
         inspection.add(source.frame)

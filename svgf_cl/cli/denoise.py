@@ -110,6 +110,8 @@ def denoise(
       svgf-cl denoise out/box -o out/box-sure --set standard_error=on   # and the channel standard_error
       svgf-cl denoise out/box -o out/box-eaw --filter eaw --set sigma_color=2
     """
+    if layer is not None and not re.fullmatch(r"[^.\s][^.]*", layer):
+        raise SvgfError(f"--layer: expected a name without dots, got {shown(layer)}")
     if plain and layer:
         raise SvgfError("--layer: expected no --plain, which writes nothing beside the picture")
     fields = {"albedo": albedo, "normal": normal, "depth": depth, "motion": motion, "id": id_}

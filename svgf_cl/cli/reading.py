@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 
 from svgf_cl.errors import SvgfError, shown
-from svgf_cl.io.cameras import NAME, read_cameras
+from svgf_cl.io.atomic import require
+from svgf_cl.io.cameras import NAME
 from svgf_cl.io.readers import READERS
 from svgf_cl.io.reading import ReadAs
 
@@ -61,13 +62,15 @@ def read_as(
         raise SvgfError(f"--motion-flip: expected x, y or xy, got {shown(motion_flip)}")
     if not 0 < motion_scale < 1e9:
         raise SvgfError(f"--motion-scale: expected a number above 0, got {motion_scale:g}")
+    if cameras:
+        require(cameras)
     scale = tuple(-motion_scale if axis in motion_flip else motion_scale for axis in "xy")
     return ReadAs(
         format=format_,
         view_layer=view_layer,
         passes=parse_maps(maps),
         motion_scale=(scale[0], scale[1]),
-        cameras=read_cameras(cameras) if cameras else {},
+        cameras=cameras or {},
         still_camera=still_camera,
     )
 

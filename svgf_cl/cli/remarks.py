@@ -14,7 +14,6 @@ from svgf_cl.errors import FileError
 from svgf_cl.frame import CARRIED, Frame
 from svgf_cl.io.look_alikes import advice, grouped
 from svgf_cl.io.readers.own import CHANNEL_NAMES, OPTIONAL, OWN, needed
-from svgf_cl.io.reading import Reading
 from svgf_cl.io.shot import Shot, ShotFrame, fields_of
 
 FIRST = 8  # frames that are checked; they tell nearly all that more would
@@ -29,11 +28,14 @@ PARTS = ("direct", "indirect")  # of the light: `Reading.lights` has them
 UNUSED = (*CARRIED, *PARTS, "motion_to_next")
 
 
-def described(reading: Reading, first: ShotFrame) -> str:
+def described(shot: Shot, first: ShotFrame) -> str:
     """Say in one line what the frames are, which fields are read from which channels, and which are missing."""
+    reading = shot.reading
     names = {field: found[1] for field, found in reading.sources.items() if field not in UNUSED}
     light = [light.channels for light in reading.lights if light.filtered]
     parts = [f"read as {reading.reader.title}: {', '.join(f'{name} ({grouped(names[name])})' for name in names)}"]
+    if shot.camera_file:
+        parts.append(f"cameras: {shot.camera_file}")
     if light:
         parts.append(f"light passes: {', '.join(grouped(each) for each in light)}")
     there = {*fields_of(first.frame), *(["emission"] if reading.lights else [])}
@@ -67,7 +69,7 @@ class Remarks:
         """Look at the next frame; `FileError` where nothing would come of it."""
         look_at_surfaces(shot, index, source)
         if self._is_first:
-            print(described(shot.reading, source))
+            print(described(shot, source))
             self._is_first = False
         if not self._left:
             return

@@ -33,13 +33,20 @@ ATTRIBUTES = {"m44f": "<f4", "m44d": "<f8"}  # types of matrices in a header, an
 EXPECTED: dict[tuple[int, ...], str] = {(): "a number", (2,): "2 numbers", (4, 4): "4 rows of 4 numbers"}
 
 
-def read_cameras(path: Path) -> dict[int, Camera]:
+def read_cameras(path: Path, shape: tuple[int, int] | None = None) -> dict[int, Camera]:
     """Read the cameras of a shot, by the numbers of its frames.
+
+    Parameters
+    ----------
+    path : Path
+    shape : (int, int), optional
+        (height, width) of the display window that the cameras must be of, in pixels.
 
     Raises
     ------
     FileError
-        The file cannot be read, or says something that no camera has; the message names the frame and the field.
+        The file cannot be read, or says something that no camera has, or is of images of another size; the message
+        names the frame and the field.
     """
     try:
         content = read_json(path)
@@ -57,6 +64,12 @@ def read_cameras(path: Path) -> dict[int, Camera]:
         frame = entry.get("frame") if isinstance(entry, dict) else None
         if type(frame) is not int or frame in cameras:
             raise FileError(f"{path}: expected cameras that each have a frame of their own, found {shown(entry)}")
+        size = tuple({**common, **entry}.get(name) for name in ("height", "width"))
+        if shape and size not in (shape, (None, None)):
+            raise FileError(
+                f"{path}: camera of frame {frame}: expected width {shape[1]} and height {shape[0]}, those of the frames,"
+                f" got {shown(size[1])} and {shown(size[0])}"
+            )
         try:
             cameras[frame] = _camera({**common, **entry})
         except ArgumentError as error:

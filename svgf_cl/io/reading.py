@@ -42,7 +42,7 @@ class ReadAs:
         Fields, or `HELPERS`, to the pass or channel that holds them.
     motion_scale : (float, float)
         What x and y of motion are multiplied by; -1 turns an axis round.
-    cameras : mapping of int to Camera
+    cameras : mapping of int to Camera, or Path
         That of each frame by its number; by default they come from the files' headers.
     still_camera : bool
         Take all motion to be 0 where nothing tells it.
@@ -52,7 +52,7 @@ class ReadAs:
     view_layer: str | None = None
     passes: Mapping[str, str] = field(default_factory=dict)
     motion_scale: tuple[float, float] = (1.0, 1.0)
-    cameras: Mapping[int, Camera] = field(default_factory=dict)
+    cameras: Mapping[int, Camera] | Path = field(default_factory=dict)
     still_camera: bool = False
 
     def __post_init__(self) -> None:

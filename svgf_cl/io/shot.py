@@ -117,6 +117,14 @@ class Shot(Sequence[Frame]):
         self._cameras: dict[int, Camera | None] = {}
         self._fields: set[str] | None = None
 
+    @cached_property
+    def camera_file(self) -> Path | None:
+        """The file that cameras are read from, where depth or motion is computed from them."""
+        given = self.reading.how.cameras
+        if {"depth", "motion"} <= self.reading.sources.keys():
+            return None
+        return given if isinstance(given, Path) else None if given else cameras_beside(self.paths[0])
+
     @property
     def shape(self) -> Shape:
         """(height, width) of all frames."""
@@ -204,8 +212,9 @@ class Shot(Sequence[Frame]):
 
     @cached_property
     def _given_cameras(self) -> Mapping[int, Camera]:
-        file = cameras_beside(self.paths[0])
-        return self.reading.how.cameras or (read_cameras(file) if file else {})
+        if self.camera_file:
+            return read_cameras(self.camera_file, (self._display.height, self._display.width))
+        return {} if isinstance(self.reading.how.cameras, Path) else self.reading.how.cameras
 
     def _shifted(self, camera: Camera | None, windows: Windows) -> Camera | None:
         """A camera whose pixels count from the corner of a data window."""

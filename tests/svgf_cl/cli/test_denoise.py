@@ -480,3 +480,40 @@ def test_the_first_frames_of_a_shot_in_chunks_are_checked_once_and_in_order(
         assert run("denoise", tmp_path / "shot", "-o", tmp_path / "out", *chunk) == 0
         assert len(checked) == remarks.FIRST
         np.testing.assert_array_equal(checked, [frame.color for frame in frames[: remarks.FIRST]])
+
+
+@pytest.mark.parametrize("name", ["Ebene", "", "a.b"])
+def test_a_layer_must_be_a_new_one_and_a_name(name: str, tmp_path: Path, refused) -> None:
+    planes = {at.number: blender(at, "Ebene") for at in moments()}
+    folder = written(tmp_path / "shot", planes, BLENDER_HEADER)
+    refused("expected n", "denoise", folder, "-o", tmp_path / "out", "--layer", name)
+
+
+def test_later_frames_make_pictures_steadier(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    noise, folder = np.random.default_rng(5).exponential(1.0, (6, 24, 40, 3)).astype(np.float32), tmp_path / "shot"
+    folder.mkdir()
+    for number, color in enumerate(noise):
+        write_frame(folder / f"frame.{number:04d}.exr", wall((24, 40), color=color))
+    spread = {}
+    for name, options in {"forward": (), "two": ("--look-ahead", "2"), "all": ("--look-ahead", "all")}.items():
+        assert run("denoise", folder, "-o", tmp_path / name, *options) == 0
+        pictures = [read_picture(tmp_path / name / f"frame.{number:04d}.exr") for number in range(6)]
+        spread[name] = float(np.diff(pictures, axis=0).std())
+    assert spread["all"] < spread["two"] < spread["forward"]
+
+
+@pytest.mark.parametrize("frames", ["0", "-1", "many", "1.5"])
+def test_a_bad_number_of_later_frames(frames: str, rendered: Path, tmp_path: Path, refused) -> None:
+    refused("--look-ahead: expected a number of frames, or all", "denoise", rendered, "-o", tmp_path,
+            f"--look-ahead={frames}")  # fmt: skip
+
+
+def test_frames_or_color(rendered: Path, tmp_path: Path, refused) -> None:
+    refused("expected either FRAMES or --color, got neither", "denoise", "-o", tmp_path / "out")
+    refused("expected either FRAMES or --color, got both", "denoise", rendered, "--color", rendered, "-o", tmp_path)
+    assert run("denoise", "--color", rendered, "-o", tmp_path / "out") == 0
+    assert len(list((tmp_path / "out").iterdir())) == len(NAMES)
+
+
+def test_a_bad_prefilter(rendered: Path, tmp_path: Path, refused) -> None:
+    refused("--prefilter: expected auto or on or off", "denoise", rendered, "-o", tmp_path, "--prefilter", "maybe")

@@ -51,7 +51,7 @@ def line(folder: Path, names: list[str]) -> str:
     planes = {name: np.ones((3, 4), np.float32) for name in names}
     write_channels(folder / "frame.0000.exr", planes)
     shot = Shot([folder / "frame.0000.exr"])
-    return described(shot.reading, shot.read(0))
+    return described(shot, shot.read(0))
 
 
 def test_one_line_says_what_is_read_and_what_that_costs(tmp_path: Path) -> None:

@@ -271,3 +271,10 @@ def test_motion_leads_to_the_same_surface_in_the_previous_frame(frame: int) -> N
     assert np.quantile(off[same_plane], 0.998) < 1e-3
     still = np.abs(((before[inside] - position[inside]) * normal[inside]).sum(-1)) / size
     assert np.nanmean(still > 1.0) > np.mean(off > 1.0)
+
+
+def test_cameras_of_another_size_are_refused(tmp_path: Path) -> None:
+    path = written(tmp_path, [{"frame": 1, "to_world": TO_WORLD, **FOV}])
+    assert read_cameras(path, (36, 64)).keys() == {1}
+    with pytest.raises(FileError, match="frame 1: expected width 32 and height 18, those of the frames, got 64 and 36"):
+        read_cameras(path, (18, 32))
