@@ -482,11 +482,11 @@ def test_the_first_frames_of_a_shot_in_chunks_are_checked_once_and_in_order(
         np.testing.assert_array_equal(checked, [frame.color for frame in frames[: remarks.FIRST]])
 
 
-@pytest.mark.parametrize("name", ["Ebene", "", "a.b"])
-def test_a_layer_must_be_a_new_one_and_a_name(name: str, tmp_path: Path, refused) -> None:
+@pytest.mark.parametrize(("name", "words"), [("Ebene", "no layer 'Ebene' yet"), ("", "a name"), ("a.b", "a name")])
+def test_a_layer_must_be_a_new_one_and_a_name(name: str, words: str, tmp_path: Path, refused) -> None:
     planes = {at.number: blender(at, "Ebene") for at in moments()}
     folder = written(tmp_path / "shot", planes, BLENDER_HEADER)
-    refused("expected n", "denoise", folder, "-o", tmp_path / "out", "--layer", name)
+    refused(f"expected {words}", "denoise", folder, "-o", tmp_path / "out", "--layer", name)
 
 
 def test_later_frames_make_pictures_steadier(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
