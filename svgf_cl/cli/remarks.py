@@ -15,6 +15,7 @@ from svgf_cl.frame import CARRIED, Frame
 from svgf_cl.io.look_alikes import advice, grouped
 from svgf_cl.io.readers.own import CHANNEL_NAMES, OPTIONAL, OWN, needed
 from svgf_cl.io.shot import Shot, ShotFrame, fields_of
+from svgf_cl.prefilter import has_noisy_depth
 
 FIRST = 8  # frames that are checked; they tell nearly all that more would
 # What it costs not to have a field.
@@ -49,6 +50,9 @@ def described(shot: Shot, first: ShotFrame) -> str:
     return "; ".join(parts)
 
 
+BLURRED = "if anything moves, turn motion blur off, with which renderers write no motion, and blur the pictures later"
+
+
 class Remarks:
     """Looks at frames as they come: says what the first one is read from, and warns of what is wrong in the first few.
 
@@ -63,6 +67,7 @@ class Remarks:
     def __init__(self, total: int, *, check: bool) -> None:
         self._left = min(FIRST, total) if check else 0
         self._is_first = True
+        self._is_still = self._is_noisy = True
         self._inspection = Inspection()
 
     def look(self, shot: Shot, index: int, source: ShotFrame) -> None:
@@ -76,6 +81,8 @@ class Remarks:
         if index in shot.cuts:
             self._inspection.cut()
         self._inspection.add(source.frame)
+        self._is_still &= not np.any(source.frame.motion)
+        self._is_noisy &= has_noisy_depth(source.frame)
         self._left -= 1
         if not self._left:
             self._warn()
@@ -91,6 +98,8 @@ class Remarks:
         found = [f"{finding.field}: {finding.what}; {finding.cure}" for finding in report.findings]
         if not any(finding.field == "depth" for finding in report.findings):
             found += [f"depth: {unknown.why}" for unknown in report.unknown if unknown.topic == SEEN.topic]
+        if self._is_still and self._is_noisy:
+            found.append(f"motion: 0 in all pixels, though depth is noisy; {BLURRED}")
         for line in found:
             warnings.warn(line, stacklevel=2)
         if found:

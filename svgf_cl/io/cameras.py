@@ -67,8 +67,8 @@ def read_cameras(path: Path, shape: tuple[int, int] | None = None) -> dict[int, 
         size = tuple({**common, **entry}.get(name) for name in ("height", "width"))
         if shape and size not in (shape, (None, None)):
             raise FileError(
-                f"{path}: camera of frame {frame}: expected width {shape[1]} and height {shape[0]}, those of the frames,"
-                f" got {shown(size[1])} and {shown(size[0])}"
+                f"{path}: camera of frame {frame}: expected width {shape[1]} and height {shape[0]}, those of the"
+                f" frames, got {shown(size[1])} and {shown(size[0])}"
             )
         try:
             cameras[frame] = _camera({**common, **entry})

@@ -19,7 +19,7 @@ from svgf_cl.io.readers import reader_called, reader_of
 from svgf_cl.io.readers.conversions import Array, without_edges
 from svgf_cl.io.readers.own import CHANNEL_NAMES, OWN, needed
 from svgf_cl.io.readers.passes import by_view_layer, called, place, plain
-from svgf_cl.io.readers.reader import HELPERS, Found, Light, Pass, Reader, Source, Values
+from svgf_cl.io.readers.reader import HELPERS, Found, LightPasses, Pass, Reader, Source, Values
 
 # Components that a field has at least.
 SIZES = {field: max(1, min(sizes)) for field, sizes in CHANNELS.items()} | HELPERS
@@ -71,13 +71,13 @@ class LightPass:
         Its red, green and blue.
     factor : tuple of str
         Channels of the pass that it is to be multiplied by; none where it is light as it is.
-    kind : readers.reader.Light
+    kind : readers.reader.LightPasses
         What is known of it.
     """
 
     channels: tuple[str, ...]
     factor: tuple[str, ...]
-    kind: Light
+    kind: LightPasses
 
     @property
     def filtered(self) -> bool:

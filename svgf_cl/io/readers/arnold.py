@@ -9,7 +9,7 @@ header's cameras, motion of what stands still can be had from them: leave motion
 from __future__ import annotations
 
 from svgf_cl.io.readers.conversions import against_time, along_time, depth_of_hits, hashes
-from svgf_cl.io.readers.reader import Light, Pass, Reader, has_attribute
+from svgf_cl.io.readers.reader import LightPasses, Pass, Reader, has_attribute
 
 ARNOLD = Reader(
     name="arnold",
@@ -32,10 +32,10 @@ ARNOLD = Reader(
         "motion": "add the AOV P, or motionvector (Camera > Instantaneous Shutter for Motion Vectors)",
     },
     lights=(
-        Light(("diffuse_direct", "diffuse_indirect", "specular_direct", "specular_indirect")),
-        Light(("coat_direct", "coat_indirect", "sheen_direct", "sheen_indirect")),
-        Light(("transmission_direct", "transmission_indirect", "sss_direct", "sss_indirect")),
-        Light(("volume_direct", "volume_indirect")),
-        Light(("emission", "background"), filtered=False),
+        LightPasses(("diffuse_direct", "diffuse_indirect", "specular_direct", "specular_indirect")),
+        LightPasses(("coat_direct", "coat_indirect", "sheen_direct", "sheen_indirect")),
+        LightPasses(("transmission_direct", "transmission_indirect", "sss_direct", "sss_indirect")),
+        LightPasses(("volume_direct", "volume_indirect")),
+        LightPasses(("emission", "background"), filtered=False),
     ),
 )

@@ -13,7 +13,7 @@ import numpy as np
 from svgf_cl.io.image import Image
 from svgf_cl.io.readers.conversions import Array, depth_of_hits, hashes, reflected, without_edges, y_down
 from svgf_cl.io.readers.passes import place
-from svgf_cl.io.readers.reader import Light, Pass, Reader, has_attribute
+from svgf_cl.io.readers.reader import LightPasses, Pass, Reader, has_attribute
 
 STAMP = {"Camera", "Frame", "RenderTime", "Scene"}  # what Blender says in the header of any file
 
@@ -53,17 +53,17 @@ BLENDER = Reader(
     },
     lights=(
         # Those of Blender 5, then those of earlier versions.
-        Light(("Diffuse Direct", "Diffuse Indirect"), "Diffuse Color"),
-        Light(("Glossy Direct", "Glossy Indirect"), "Glossy Color", reflects=True),
-        Light(("Transmission Direct", "Transmission Indirect"), "Transmission Color", reflects=True),
-        Light(("Volume Direct", "Volume Indirect")),
-        Light(("Emission",), filtered=False),
-        Light(("Environment",), filtered=False, is_background=True),
-        Light(("DiffDir", "DiffInd"), "DiffCol"),
-        Light(("GlossDir", "GlossInd"), "GlossCol", reflects=True),
-        Light(("TransDir", "TransInd"), "TransCol", reflects=True),
-        Light(("VolumeDir", "VolumeInd")),
-        Light(("Emit",), filtered=False),
-        Light(("Env",), filtered=False, is_background=True),
+        LightPasses(("Diffuse Direct", "Diffuse Indirect"), "Diffuse Color"),
+        LightPasses(("Glossy Direct", "Glossy Indirect"), "Glossy Color", reflects=True),
+        LightPasses(("Transmission Direct", "Transmission Indirect"), "Transmission Color", reflects=True),
+        LightPasses(("Volume Direct", "Volume Indirect")),
+        LightPasses(("Emission",), filtered=False),
+        LightPasses(("Environment",), filtered=False, is_background=True),
+        LightPasses(("DiffDir", "DiffInd"), "DiffCol"),
+        LightPasses(("GlossDir", "GlossInd"), "GlossCol", reflects=True),
+        LightPasses(("TransDir", "TransInd"), "TransCol", reflects=True),
+        LightPasses(("VolumeDir", "VolumeInd")),
+        LightPasses(("Emit",), filtered=False),
+        LightPasses(("Env",), filtered=False, is_background=True),
     ),
 )

@@ -7,7 +7,7 @@ import numpy as np
 from svgf_cl.frame import REQUIRED
 from svgf_cl.io.image import Image
 from svgf_cl.io.readers.conversions import Array
-from svgf_cl.io.readers.reader import Exactly, Light, Reader
+from svgf_cl.io.readers.reader import Exactly, LightPasses, Reader
 
 # Channels of each field, in the order of its components; `OPTIONAL` may be missing.
 CHANNEL_NAMES: dict[str, tuple[str, ...]] = {
@@ -58,5 +58,5 @@ OWN = Reader(
         field: (Exactly(names, (OPTIONAL,), whole_numbers if field == "id" else None),)
         for field, names in CHANNEL_NAMES.items()
     },
-    lights=(Light(("direct", "indirect")), Light(("emission",), filtered=False)),
+    lights=(LightPasses(("direct", "indirect")), LightPasses(("emission",), filtered=False)),
 )

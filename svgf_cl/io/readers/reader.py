@@ -127,7 +127,7 @@ class Exactly:
 
 
 @dataclass(frozen=True)
-class Light:
+class LightPasses:
     """Parts of the picture that are stored as passes of their own.
 
     Parameters
@@ -167,7 +167,7 @@ class Reader:
         Where each field of a frame is, or may be; the best first. Beside the fields there may be `HELPERS`.
     switches : mapping of str to str
         What to do in the renderer to have a field written, for those that users forget.
-    lights : tuple of Light
+    lights : tuple of LightPasses
         Their sum is the picture.
     complete : callable, optional
         Makes fields of what the passes hold, where that takes more than one of them.
@@ -178,7 +178,7 @@ class Reader:
     recognises: Callable[[Image], bool]
     passes: Mapping[str, tuple[Source, ...]]
     switches: Mapping[str, str] = field(default_factory=dict)
-    lights: tuple[Light, ...] = ()
+    lights: tuple[LightPasses, ...] = ()
     complete: Complete | None = None
 
     def sources(self, found: Found) -> dict[str, tuple[Source, tuple[str, ...]]]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from svgf_cl.io.image import Image
 from svgf_cl.io.readers.conversions import against_time, along_time, depth_of_hits, hashes, without_edges
-from svgf_cl.io.readers.reader import Light, Pass, Reader, has_attribute
+from svgf_cl.io.readers.reader import LightPasses, Pass, Reader, has_attribute
 
 
 def recognises(image: Image) -> bool:
@@ -42,9 +42,11 @@ VRAY = Reader(
         "motion": "add the render element Velocity, without clamping, and turn motion blur off",
     },
     lights=(
-        Light(("lighting", "gi", "specular", "reflection", "refraction", "sss", "caustics", "atmospheric_effects")),
-        Light(("VRayLighting", "VRayGlobalIllumination", "VRaySpecular", "VRayReflection", "VRayRefraction")),
-        Light(("VRaySSS", "VRayCaustics", "VRayAtmosphere")),
-        Light(("self_illumination", "background", "VRaySelfIllumination", "VRayBackground"), filtered=False),
+        LightPasses(
+            ("lighting", "gi", "specular", "reflection", "refraction", "sss", "caustics", "atmospheric_effects")
+        ),
+        LightPasses(("VRayLighting", "VRayGlobalIllumination", "VRaySpecular", "VRayReflection", "VRayRefraction")),
+        LightPasses(("VRaySSS", "VRayCaustics", "VRayAtmosphere")),
+        LightPasses(("self_illumination", "background", "VRaySelfIllumination", "VRayBackground"), filtered=False),
     ),
 )

@@ -165,3 +165,14 @@ def test_the_next_frame_s_motion_in_the_third_component_is_said(
     vectors = changed(room, "motion", lambda motion: np.stack([motion[..., 0], motion[..., 1], 9 - motion[..., 0]], -1))
     err = said(capsys, written(tmp_path / "in", vectors), "-o", tmp_path / "out")[1]
     assert "motion: third component is not the change of depth; give previous minus current depth, or two" in err
+
+
+def test_motion_that_motion_blur_left_out_is_said(
+    tmp_path: Path, room: list[Frame], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Depth of a still camera is the same in every sample; that of a moving one is not."""
+    rng = np.random.default_rng(7)
+    blurred = changed(room, "depth", lambda depth: depth * rng.uniform(0.99, 1.01, depth.shape))
+    still = changed(blurred, "motion", np.zeros_like)
+    assert "turn motion blur off" in said(capsys, written(tmp_path / "in", still), "-o", tmp_path / "out")[1]
+    assert "turn motion blur off" not in said(capsys, written(tmp_path / "in2", blurred), "-o", tmp_path / "out2")[1]

@@ -11,13 +11,12 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from svgf_cl import FileError
 from svgf_cl.cli import plain_warnings
-from svgf_cl.io.exr import read_channels, write_channels
-from svgf_cl.io.overlap import Writers, ahead, in_order
+from svgf_cl.io.exr import read_channels
+from svgf_cl.io.overlap import ahead, in_order
 
 SECONDS = 20  # that no test takes unless it hangs
 
@@ -120,103 +119,12 @@ def test_warnings_of_a_thread_reach_the_user(capsys: pytest.CaptureFixture[str])
         warnings.warn("frame 1 is odd", stacklevel=1)
         yield 1
 
-    def job() -> None:
-        warnings.warn("picture 1 is odd", stacklevel=1)
-
-    with plain_warnings("svgf-cl"), Writers(1) as writers:
+    with plain_warnings("svgf-cl"):
         warnings.simplefilter("always")
-        writers.submit(job)
-        list(ahead(source(), 2))
+        list(in_order(lambda _: warnings.warn("picture 1 is odd", stacklevel=1), ahead(source(), 2), 1))
     said = capsys.readouterr().err
     assert "svgf-cl: warning: frame 1 is odd\n" in said
     assert "svgf-cl: warning: picture 1 is odd\n" in said
-
-
-# Writers
-
-
-def failing(message: str) -> None:
-    raise FileError(message)
-
-
-def test_all_jobs_are_done_at_the_end(tmp_path: Path) -> None:
-    """In folders that are made by whichever is first."""
-    planes = {"R": np.random.default_rng(0).random((20, 30), np.float32)}
-    paths = [tmp_path / "new" / "folder" / f"frame.{number:04d}.exr" for number in range(24)]
-    with Writers(4) as writers:
-        for path in paths:
-            writers.submit(write_channels, path, planes)
-    for path in paths:
-        np.testing.assert_array_equal(read_channels(path)["R"], planes["R"])
-    assert sorted(path.name for path in paths[0].parent.iterdir()) == [path.name for path in paths]
-
-
-def test_no_more_jobs_run_than_allowed() -> None:
-    running, most, lock = 0, 0, threading.Lock()
-    both = threading.Barrier(2)
-
-    def job() -> None:
-        nonlocal running, most
-        with lock:
-            running += 1
-            most = max(most, running)
-        both.wait(SECONDS)
-        with lock:
-            running -= 1
-
-    with Writers(2) as writers:
-        for _ in range(20):
-            writers.submit(job)
-    assert most == 2
-
-
-def test_an_error_is_raised_by_the_next_job_and_all_before_it_are_done() -> None:
-    done: list[int] = []
-
-    def three_jobs() -> None:
-        with Writers(1) as writers:
-            writers.submit(done.append, 1)
-            writers.submit(failing, "disk is full")
-            writers.submit(done.append, 2)
-            done.append(3)
-
-    with pytest.raises(FileError, match="disk is full"):
-        three_jobs()
-    assert done == [1]
-
-
-def test_of_several_errors_that_of_the_first_job_is_raised_and_the_others_are_told() -> None:
-    later = threading.Event()
-
-    def slow() -> None:
-        assert later.wait(SECONDS)
-        failing("first")
-
-    def fast() -> None:
-        later.set()
-        failing("second")
-
-    def both() -> None:
-        with Writers(3) as writers:
-            writers.submit(slow)
-            writers.submit(fast)
-
-    with pytest.raises(FileError, match="first"), pytest.warns(UserWarning, match="^second$"):
-        both()
-
-
-def test_an_error_of_the_block_comes_before_those_of_its_jobs() -> None:
-    done: list[int] = []
-
-    def interrupted() -> None:
-        with Writers(2) as writers:
-            writers.submit(done.append, 1)
-            writers.submit(failing, "disk is full")
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt), pytest.warns(UserWarning, match="^disk is full$"):
-        interrupted()
-    assert done == [1]
 
 
 WRITE_FOR_EVER = """
@@ -224,13 +132,14 @@ import itertools, signal, sys
 from pathlib import Path
 import numpy as np
 from svgf_cl.io.exr import write_channels
-from svgf_cl.io.overlap import Writers, ahead
+from svgf_cl.io.overlap import ahead, in_order
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background processes ignore it
 planes = {"R": np.random.default_rng(0).random((400, 600), np.float32)}
-with Writers(2) as writers:
-    for number in ahead(itertools.count(), 3):
-        writers.submit(write_channels, Path(sys.argv[1], f"frame.{number:04d}.exr"), planes)
-        print(number, flush=True)
+def write(number):
+    write_channels(Path(sys.argv[1], f"frame.{number:04d}.exr"), planes)
+    return number
+for number in in_order(write, ahead(itertools.count(), 3), 2):
+    print(number, flush=True)
 """
 
 
