@@ -9,12 +9,13 @@ from functools import partial
 
 import numpy as np
 
+from svgf_cl.check.noise import has_noisy_depth
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.temporal import TemporalFilter
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.shot import Light
 from svgf_cl.lights import Channels, Denoised, LightsDenoiser, Parts, Picture, finite, limited, remainder
-from svgf_cl.prefilter import Effort, Prefilter, has_noisy_depth
+from svgf_cl.prefilter import Effort, Prefilter
 
 # Of pixels that are darker than the sum of their lights: where they are more, the passes are not parts of the picture.
 STRAY = 0.01

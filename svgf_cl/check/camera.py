@@ -17,6 +17,7 @@ import numpy as np
 
 from svgf_cl.check.check import Check
 from svgf_cl.check.finding import Finding, Unknown
+from svgf_cl.check.noise import has_noisy_depth
 from svgf_cl.check.view import Array, View, pixel_centers, sample
 
 SAMPLES = 2000
@@ -95,6 +96,8 @@ def typical_depth(view: View) -> float:
 def offsets(before: View, now: View) -> Array | None:
     """Frames; for each of `FOCAL_LENGTHS` the offset's x and y in pixels of the frame, and its square: (4, n)."""
     del before  # motion alone tells, but the first frame's leads nowhere
+    if has_noisy_depth(now.frame):  # an error in depth that a camera's path cannot explain looks like an offset
+        return None
     camera = path(now)
     if camera is None:
         return None
@@ -119,7 +122,7 @@ JITTER = Check(
     "motion: free of jitter",
     offsets,
     judge,
-    "too much moves by itself, or all is on one plane",
+    "too much moves by itself, all is on one plane, or depth is noisy",
     frames=2,
     trusts=("normal", "depth", "motion"),
 )

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from svgf_cl.check import Inspection
+from svgf_cl.check.noise import has_noisy_depth
 from svgf_cl.check.values import SEEN
 from svgf_cl.check.view import FAR, has_normal, in_range
 from svgf_cl.errors import FileError
@@ -15,7 +16,6 @@ from svgf_cl.frame import CARRIED, Frame
 from svgf_cl.io.look_alikes import advice, grouped
 from svgf_cl.io.readers.own import CHANNEL_NAMES, OPTIONAL, OWN, needed
 from svgf_cl.io.shot import Shot, ShotFrame, fields_of
-from svgf_cl.prefilter import has_noisy_depth
 
 FIRST = 8  # frames that are checked; they tell nearly all that more would
 # What it costs not to have a field.

@@ -28,7 +28,8 @@ def seen(turn: np.ndarray, move: tuple[float, float, float], added: tuple[float,
     depth = 4 + np.sin(x / 9) + np.cos(y / 7)
     past = np.stack([x / FOCAL * depth, y / FOCAL * depth, depth], axis=-1) @ turn.T + move
     motion = FOCAL * past[..., :2] / past[..., 2:] - np.stack([x, y], axis=-1) + added
-    normal = np.broadcast_to(np.float32([0, 0, 1]), (*SHAPE, 3))
+    slope = np.stack([np.cos(x / 9), -np.sin(y / 7), np.ones(SHAPE)], axis=-1)
+    normal = (slope / np.linalg.norm(slope, axis=-1, keepdims=True)).astype(np.float32)
     return View.of(Frame(color=normal, normal=normal, depth=depth, motion=motion))
 
 

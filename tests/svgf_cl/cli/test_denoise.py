@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from svgf_cl import Frame, open_sequence
+from svgf_cl.check.noise import has_noisy_depth
 from svgf_cl.cli import remarks
 from svgf_cl.compare.metrics import flip, psnr, ssim, why_no_flip
 from svgf_cl.io.display import display
@@ -20,7 +21,6 @@ from svgf_cl.io.readers import READERS
 from svgf_cl.io.reading import ReadAs, Reading, stacked
 from svgf_cl.io.synthetic import room_frames
 from svgf_cl.io.window import Window
-from svgf_cl.prefilter import has_noisy_depth
 from tests.command_line import NAMES, contents, run
 from tests.exr_files import exr_bytes, multipart_bytes
 from tests.frames import wall
