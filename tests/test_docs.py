@@ -8,11 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import typer
 
 from scripts import pass_table, scene_description
+from svgf_cl.cli import application
 from svgf_cl.device import apart
 from svgf_cl.filters.formats import HALF_MAX
 from svgf_cl.io import cache, cameras, exr, frames
+from svgf_cl.io.readers import READERS
 from svgf_cl.oracle import temporal
 from svgf_cl_tracer import panorama
 from svgf_cl_tracer.description import document
@@ -100,3 +103,47 @@ def test_the_file_of_cameras_in_the_page_is_one(tmp_path: Path) -> None:
     assert list(cameras.read_cameras(tmp_path / cameras.NAME)) == [
         each["frame"] for each in json.loads(text)["cameras"]
     ]
+
+
+PAGES = [ROOT / "README.md", *sorted(ROOT.glob("examples/*.md")), *sorted(ROOT.glob("docs/**/*.md"))]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_lead_somewhere(page: Path) -> None:
+    text = re.sub(r"```.*?```|`[^`\n]*`", "", page.read_text(), flags=re.DOTALL)
+    for target in re.findall(r"\]\(([^)\s]+)\)", text):
+        if "://" in target:
+            continue
+        name, _, anchor = target.partition("#")
+        path = (page.parent / name).resolve() if name else page
+        assert path.exists(), target
+        assert not anchor or anchor in anchors(path), target
+
+
+def anchors(page: Path) -> set[str]:
+    """What links may name in a page: its headings, as GitHub makes anchors of them."""
+    text = re.sub(r"```.*?```", "", page.read_text(), flags=re.DOTALL)
+    headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+# Renderers' pages
+
+RENDERERS = ROOT / "docs" / "renderers"
+
+
+def test_each_renderer_has_a_page_that_the_index_names() -> None:
+    pages = {f"{'other' if name == 'svgf_cl' else name}.md" for name in READERS}
+    assert pages == {page.name for page in RENDERERS.glob("*.md")} - {"README.md"}
+    index = (RENDERERS / "README.md").read_text()
+    assert all(f"[{page}]({page})" in index for page in pages)
+
+
+@pytest.mark.parametrize("page", sorted(RENDERERS.glob("*.md")), ids=lambda page: page.name)
+def test_options_that_pages_name_are_those_of_denoise(page: Path) -> None:
+    command = typer.main.get_group(application()).commands["denoise"]
+    known = {name for option in command.params for name in (*option.opts, *option.secondary_opts)}
+    lines = page.read_text().replace("\\\n", " ").splitlines()
+    named = [line for line in lines if "svgf-cl denoise" in line or line.startswith("| `--")]
+    assert named
+    assert {option for line in named for option in re.findall(r"(?<![\w-])--[a-z][a-z-]*", line)} <= known
