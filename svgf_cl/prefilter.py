@@ -55,8 +55,8 @@ class Prefilter:
         """The same frame with better guides."""
         better: dict[str, Array] = {}
         if frame.albedo is not None:
-            is_black = frame.albedo.max(axis=-1, keepdims=True) < BLACK
-            better["albedo"] = np.where(is_black, frame.albedo, self._filtered("albedo", frame, frame.albedo))
+            filtered = self._filtered("albedo", frame, frame.albedo)
+            better["albedo"] = np.where(is_black_area(frame.albedo), frame.albedo, filtered)
         if self._is_noisy:
             with np.errstate(divide="ignore"):
                 nearness = np.where(frame.depth > 0.0, 1.0 / frame.depth, np.float32(0.0))
@@ -95,6 +95,15 @@ class Prefilter:
         least, most = extremes(whole.color)
         smooth: Array = np.clip(self._denoisers.denoise(name, whole), least, most)
         return smooth
+
+
+def is_black_area(albedo: Array) -> npt.NDArray[np.bool_]:
+    """Whether a pixel and most of its eight neighbours are black, (H, W, 1): a single one is noise."""
+    padded = np.pad(albedo.max(axis=-1) < BLACK, 1, mode="edge").astype(np.int8)
+    height, width = albedo.shape[:2]
+    count = sum(padded[y : y + height, x : x + width] for y in range(3) for x in range(3))
+    is_area: npt.NDArray[np.bool_] = (padded[1:-1, 1:-1] > 0) & (count > 4)
+    return is_area[..., None]
 
 
 def extremes(value: Array) -> tuple[Array, Array]:
