@@ -27,6 +27,7 @@ Channels = tuple[str, ...]
 # and so are the factors and the picture.
 ROUNDING = 2.0**-9
 LEAST = 1e-6  # a difference that is nothing, where there is no light
+BACKDROP = 100.0  # depth of what is behind everything, over that of the farthest surface
 WHOLE, REST = ("picture",), ("rest",)
 WEIGHTS = np.array(LUMINANCE, np.float32)
 
@@ -109,11 +110,11 @@ class LightsDenoiser:
         frame, rest = parts.frame, parts.rest
         if rest is None:
             return {WHOLE: self._denoisers.denoise(WHOLE, frame)}
-        made = {}
+        made, backed = {}, with_backdrop(frame)
         for light in parts.lights:
             if light.filtered and (light.channels in self._denoisers or light.radiance.any()):
                 albedo = frame.albedo if light.factor is None or light.reflects else None
-                made[light.channels] = self._denoisers.denoise(light.channels, single(frame, light.radiance, albedo))
+                made[light.channels] = self._denoisers.denoise(light.channels, single(backed, light.radiance, albedo))
         if REST in self._denoisers or rest.max(initial=0.0) > 0.0:
             made[REST] = self._denoisers.denoise(REST, single(frame, np.maximum(rest, 0.0), frame.albedo))
         return made
@@ -139,6 +140,18 @@ class LightsDenoiser:
     def profile(self) -> dict[str, float]:
         """Milliseconds on the device of each pass of the last frame, all lights together."""
         return self._denoisers.profile()
+
+
+def with_backdrop(frame: Frame) -> Frame:
+    """The frame with a surface far behind all others where nothing was hit.
+
+    A light pass has light there only if it comes from something in between, as fog. It is filtered, too.
+    """
+    is_empty = ~np.any(frame.normal, axis=-1)
+    seen = frame.depth[~is_empty & np.isfinite(frame.depth)]
+    depth = np.where(is_empty, BACKDROP * seen.max(initial=1.0), frame.depth).astype(np.float32)
+    normal = np.where(is_empty[..., None], np.array([0, 0, 1], np.float32), frame.normal)
+    return replace(frame, normal=normal, depth=depth)
 
 
 def single(frame: Frame, light: Picture, albedo: Picture | None) -> Frame:
