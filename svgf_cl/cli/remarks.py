@@ -88,8 +88,8 @@ class Remarks:
             self._warn()
             self._inspection = Inspection()  # what it held is free
 
-    def look_ahead(self, shot: Shot, places: range) -> None:
-        """Look at the first of the frames of a shot that is denoised in chunks."""
+    def look_at_first(self, shot: Shot, places: range) -> None:
+        """Look at the first of the frames of a shot before any of it is denoised."""
         for index in places[: max(1, self._left)]:
             self.look(shot, index, shot.read(index))
 
