@@ -13,6 +13,7 @@ from svgf_cl.cli import remarks
 from svgf_cl.cli.remarks import described
 from svgf_cl.io.exr import read_channels, write_channels
 from svgf_cl.io.frames import frame_path, write_frame
+from svgf_cl.io.separate import SeparateFiles
 from svgf_cl.io.shot import Shot
 from svgf_cl.io.synthetic import room_frames
 from svgf_cl.shot_walk import ShotWalk
@@ -192,3 +193,11 @@ def test_a_mistake_is_said_before_later_frames_are_filtered(
     assert "read as" in captured.out
     assert "warning: normal: encoded" in captured.err
     assert captured.err.endswith("filtered\n")
+
+
+def test_a_field_of_its_own_is_said_with_its_file(tmp_path: Path) -> None:
+    planes = {name: np.ones((3, 4), np.float32) for name in PLAIN}
+    write_channels(tmp_path / "frame.0000.exr", planes)
+    write_channels(tmp_path / "albedo.0000.exr", {name: np.ones((3, 4), np.float32) for name in "RGB"})
+    shot = Shot([tmp_path / "frame.0000.exr"], separate=SeparateFiles.of({"albedo": tmp_path / "albedo.####.exr"}))
+    assert "albedo (albedo.0000.exr)" in described(shot, shot.read(0))
