@@ -40,7 +40,8 @@ def has_noisy_depth(frame: Frame) -> bool:
     left, middle, right = (np.s_[:, place : frame.shape[1] - 2 + place] for place in range(3))
     if (hit[left] & ~hit[middle] & hit[right]).sum() > HOLES * hit.size:
         return True
-    unit = frame.normal / np.maximum(np.linalg.norm(frame.normal, axis=-1, keepdims=True), LEAST_LENGTH)
+    with np.errstate(invalid="ignore"):  # an infinite normal is of no plane
+        unit = frame.normal / np.maximum(np.linalg.norm(frame.normal, axis=-1, keepdims=True), LEAST_LENGTH)
     is_flat = [np.sum(unit[side] * unit[middle], axis=-1) > PLANE for side in (left, right)]
     plane = hit[left] & hit[middle] & hit[right] & is_flat[0] & is_flat[1]
     nearness = 1.0 / np.where(hit, frame.depth, 1.0).astype(np.float64)
@@ -117,13 +118,13 @@ class Prefilter:
 
 
 def extremes(value: Array) -> tuple[Array, Array]:
-    """The least and the greatest value (H, W, C) of each pixel and its eight neighbours.
+    """The least and the greatest value (H, W, C) of each pixel and its eight neighbours; NaN does not count.
 
     What is filtered stays between them, so nothing is left behind where motion is wrong.
     """
     padded = np.pad(value, ((1, 1), (1, 1), (0, 0)), mode="edge")
     found = []
-    for choose in (np.minimum, np.maximum):
+    for choose in (np.fmin, np.fmax):
         rows = choose(choose(padded[:-2], padded[1:-1]), padded[2:])
         found.append(choose(choose(rows[:, :-2], rows[:, 1:-1]), rows[:, 2:]))
     return found[0], found[1]
