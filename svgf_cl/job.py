@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from svgf_cl.errors import FileError
-from svgf_cl.filters.kalman import STANDARD_ERROR
+from svgf_cl.errors import FileError, SvgfError
+from svgf_cl.filters.kalman import STANDARD_ERROR, Kalman
 from svgf_cl.io.display import to_bytes
 from svgf_cl.io.display import write_image as write_png
 from svgf_cl.io.exr import write_image
@@ -71,6 +71,11 @@ class Job:
         What is written.
     look_ahead : int, optional
         How many later frames each one is made from, too; 0 for all of them, None for none.
+
+    Raises
+    ------
+    SvgfError
+        Standard errors are asked for of pictures from later frames, too: those of the two runs are not independent.
     """
 
     paths: tuple[Path, ...]
@@ -80,6 +85,11 @@ class Job:
     separate: SeparateFiles = field(default_factory=lambda: SeparateFiles({}))
     style: Style = field(default_factory=Style)
     look_ahead: int | None = None
+
+    def __post_init__(self) -> None:
+        settings = self.method.settings
+        if self.look_ahead is not None and isinstance(settings, Kalman) and settings.standard_error:
+            raise SvgfError("standard_error: expected it off with --look-ahead, which makes no estimate of it, got on")
 
 
 @dataclass(frozen=True)
@@ -172,9 +182,9 @@ def made(shot: Shot, job: Job, chunk: Chunk, look: Look | None) -> Iterator[tupl
         return
     walk = ShotWalk(shot, job.method, range(chunk.first, chunk.end), look)
     for (index, source), parts in both_ways(walk, walk.cuts, job.look_ahead or None):
-        if index >= chunk.written.stop:
-            return
         yield index, Made(source, walk.composed(parts), walk.forward.profile())
+        if index == chunk.written[-1]:  # the next block is not begun
+            return
 
 
 def made_forward(shot: Shot, method: Method, places: range, look: Look | None) -> Iterator[tuple[int, Made]]:

@@ -107,13 +107,13 @@ def is_black_area(albedo: Array) -> npt.NDArray[np.bool_]:
 
 
 def extremes(value: Array) -> tuple[Array, Array]:
-    """The least and the greatest value (H, W, C) of each pixel and its eight neighbours.
+    """The least and the greatest value (H, W, C) of each pixel and its eight neighbours; NaN does not count.
 
     What is filtered stays between them, so nothing is left behind where motion is wrong.
     """
     padded = np.pad(value, ((1, 1), (1, 1), (0, 0)), mode="edge")
     found = []
-    for choose in (np.minimum, np.maximum):
+    for choose in (np.fmin, np.fmax):
         rows = choose(choose(padded[:-2], padded[1:-1]), padded[2:])
         found.append(choose(choose(rows[:, :-2], rows[:, 1:-1]), rows[:, 2:]))
     return found[0], found[1]

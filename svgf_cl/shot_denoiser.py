@@ -51,11 +51,13 @@ class ShotDenoiser:
     method : Method
     lights : int
         How many light passes frames have.
+    share : float
+        Of the device's memory, for all that is filtered of a frame together.
     """
 
-    def __init__(self, shape: Shape, method: Method, lights: int = 0) -> None:
+    def __init__(self, shape: Shape, method: Method, lights: int = 0, share: float = 1.0) -> None:
         self._method = method
-        self._share = 1.0 / (GUIDES + 2 * lights)  # each light may have a factor that is filtered, too
+        self._share = share / (GUIDES + 2 * lights)  # each light may have a factor that is filtered, too
         self._shape = shape
         self._lights = LightsDenoiser(shape, method.settings, self._share)
         self._prefilter: Prefilter | None = None

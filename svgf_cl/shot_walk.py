@@ -31,8 +31,8 @@ class ShotWalk:
     def __init__(self, shot: Shot, method: Method, places: range, look: Look | None = None) -> None:
         self._shot, self._places, self._look = shot, places, look
         typical = shot.typical()  # the same for all chunks, so that they are alike
-        lights = 2 * max(1, len(typical.lights))  # as both share the device's memory
-        self.forward, self._backward = (ShotDenoiser(shot.shape, method, lights) for _ in range(2))
+        lights = len(typical.lights)
+        self.forward, self._backward = (ShotDenoiser(shot.shape, method, lights, share=0.5) for _ in range(2))
         for denoiser in (self.forward, self._backward):
             denoiser.settle(typical.frame, typical.lights)
         self._parts: Parts | None = None

@@ -19,7 +19,8 @@ def has_noisy_depth(frame: Frame) -> bool:
     left, middle, right = (np.s_[:, place : frame.shape[1] - 2 + place] for place in range(3))
     if (hit[left] & ~hit[middle] & hit[right]).sum() > HOLES * hit.size:
         return True
-    unit = frame.normal / np.maximum(np.linalg.norm(frame.normal, axis=-1, keepdims=True), LEAST_LENGTH)
+    with np.errstate(invalid="ignore"):  # an infinite normal is of no plane
+        unit = frame.normal / np.maximum(np.linalg.norm(frame.normal, axis=-1, keepdims=True), LEAST_LENGTH)
     is_flat = [np.sum(unit[side] * unit[middle], axis=-1) > PLANE for side in (left, right)]
     plane = hit[left] & hit[middle] & hit[right] & is_flat[0] & is_flat[1]
     nearness = 1.0 / np.where(hit, frame.depth, 1.0).astype(np.float64)

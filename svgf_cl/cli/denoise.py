@@ -159,13 +159,14 @@ def parse_look_ahead(text: str | None) -> int | None:
 
 
 def frames_done(job: Job, chunks: list[Chunk], scheduler: str | None, check: bool) -> Iterator[Done]:
-    """Denoise chunks here or on a cluster, with remarks on the first frames, which are made here."""
+    """Denoise chunks here or on a cluster, with remarks on the first frames."""
     places = range(chunks[0].first, chunks[-1].written.stop)
     remarks = Remarks(len(places), check=check)
-    if len(chunks) == 1 and not scheduler:
+    if len(chunks) == 1 and not scheduler and job.look_ahead is None:
         yield from run(job, chunks[0], remarks.look)
         return
-    remarks.look_ahead(Shot(job.paths, job.how, job.separate), places)
+    # Other frames may be filtered before the first ones.
+    remarks.look_at_first(Shot(job.paths, job.how, job.separate), places)
     if scheduler:
         yield from denoise_on_cluster(scheduler, job, chunks, look_at_surfaces)
     else:

@@ -34,7 +34,9 @@ def described(shot: Shot, first: ShotFrame) -> str:
     reading = shot.reading
     names = {field: found[1] for field, found in reading.sources.items() if field not in UNUSED}
     light = [light.channels for light in reading.lights if light.filtered]
-    parts = [f"read as {reading.reader.title}: {', '.join(f'{name} ({grouped(names[name])})' for name in names)}"]
+    files = {field: next(iter(paths.values())).name for field, paths in shot.separate.paths.items()}
+    read = ", ".join(f"{name} ({files.get(name) or grouped(channels)})" for name, channels in names.items())
+    parts = [f"read as {reading.reader.title}: {read}"]
     if shot.camera_file:
         parts.append(f"cameras: {shot.camera_file}")
     if light:
@@ -88,8 +90,8 @@ class Remarks:
             self._warn()
             self._inspection = Inspection()  # what it held is free
 
-    def look_ahead(self, shot: Shot, places: range) -> None:
-        """Look at the first of the frames of a shot that is denoised in chunks."""
+    def look_at_first(self, shot: Shot, places: range) -> None:
+        """Look at the first of the frames of a shot before any of it is denoised."""
         for index in places[: max(1, self._left)]:
             self.look(shot, index, shot.read(index))
 

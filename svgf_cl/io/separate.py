@@ -6,12 +6,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from svgf_cl.errors import FileError
+from svgf_cl.errors import FileError, SvgfError, shown
+from svgf_cl.frame import CHANNELS
 from svgf_cl.io.exr import read_image
 from svgf_cl.io.image import Image, Plane
 from svgf_cl.io.readers.passes import PLACES, by_view_layer
+from svgf_cl.io.readers.reader import HELPERS
 from svgf_cl.io.sequence import find_frames, number_of
 from svgf_cl.io.window import Window
+
+# The picture is that of the frame's own file.
+FIELDS = tuple(name for name in CHANNELS | HELPERS if name not in ("color", "motion_to_next"))
 
 
 @dataclass(frozen=True)
@@ -28,13 +33,32 @@ class SeparateFiles:
 
     @classmethod
     def of(cls, patterns: Mapping[str, Path]) -> SeparateFiles:
-        """Find the files of fields by a pattern, a folder or a file each; errors as of `find_frames`."""
+        """Find the files of fields by a pattern, a folder or a file each.
+
+        Raises
+        ------
+        FileError
+            As of `find_frames`.
+        SvgfError
+            There is no field of that name.
+        """
+        for field in patterns:
+            if field not in FIELDS:
+                raise SvgfError(f"separate: expected one of {', '.join(FIELDS)}, got {shown(field)}")
         return cls(
             {
                 field: {number_of(path): path for path in find_frames([pattern], allow_gaps=True)}
                 for field, pattern in patterns.items()
             }
         )
+
+    def require(self, numbers: Sequence[int]) -> None:
+        """Raise `FileError` unless each of these frames has its file of every field."""
+        for field, files in self.paths.items():
+            missing = [number for number in numbers if number not in files]
+            if missing:
+                example = next(iter(files.values()))
+                raise FileError(f"{example}: expected a file of {field} for frame {missing[0]} beside it, found none")
 
     def channels(self, number: int) -> dict[str, tuple[str, ...]]:
         """The channels of each field, as `planes` calls them, told from the files of one frame."""
@@ -46,16 +70,13 @@ class SeparateFiles:
         Raises
         ------
         FileError
-            The frame has no file of a field, or that has no pass or several, or another data window.
+            A frame's file of a field has no pass or several, or another data window.
         """
         return {name: plane for field in self.paths for name, plane in self._planes(field, number, window).items()}
 
     def _planes(self, field: str, number: int, window: Window | None = None) -> dict[str, Plane]:
-        files = self.paths[field]
-        if number not in files:
-            example = next(iter(files.values()))
-            raise FileError(f"{example}: expected a file of {field} for frame {number} beside it, found none")
-        path, image = files[number], read_image(files[number])
+        path = self.paths[field][number]
+        image = read_image(path)
         if window not in (None, image.windows.data):
             raise FileError(f"{path}: expected the data window {window} of its frame, got {image.windows.data}")
         return {f"{field} {index}": image.planes[name] for index, name in enumerate(pass_of(path, image))}

@@ -92,6 +92,8 @@ class Shot(Sequence[Frame]):
 
     Attributes
     ----------
+    separate : SeparateFiles
+        Further files of each frame.
     reading : Reading
         How files become frames.
     window : Window
@@ -102,7 +104,7 @@ class Shot(Sequence[Frame]):
     Raises
     ------
     FileError
-        The files cannot lie on one picture, or the first is not read as `how` has it.
+        The files cannot lie on one picture, the first is not read as `how` has it, or a frame lacks a file of a field.
     """
 
     def __init__(self, paths: Sequence[Path], how: ReadAs | None = None, separate: SeparateFiles | None = None) -> None:
@@ -110,9 +112,10 @@ class Shot(Sequence[Frame]):
         self.window = shared_window(self.paths)
         gaps = after_gaps(self.paths)
         self.cuts = {index for index, path in enumerate(self.paths) if path in gaps}
-        self._separate = separate or SeparateFiles({})
+        self.separate = separate or SeparateFiles({})
+        self.separate.require([number_of(path) for path in self.paths])
         first = read_image(self.paths[0])
-        self.reading = Reading(self.paths[0], first, how or ReadAs(), self._separate.channels(number_of(self.paths[0])))
+        self.reading = Reading(self.paths[0], first, how or ReadAs(), self.separate.channels(number_of(self.paths[0])))
         self._display = first.windows.display
         self._cameras: dict[int, Camera | None] = {}
         self._fields: set[str] | None = None
@@ -153,7 +156,7 @@ class Shot(Sequence[Frame]):
         """
         path = self.paths[index]
         image = read_image(path)
-        planes = {**image.planes, **self._separate.planes(number_of(path), image.windows.data)}
+        planes = {**image.planes, **self.separate.planes(number_of(path), image.windows.data)}
         frame = self.reading.frame(path, planes, *self._cameras_at(index, image.windows))
         self._check_fields(path, frame)
         check_usable(path, frame)

@@ -8,13 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl import FileError
+from svgf_cl import FileError, SvgfError
 from svgf_cl.filters import DEFAULT
 from svgf_cl.io.exr import read_channels, read_image
 from svgf_cl.io.sequence import find_frames
 from svgf_cl.io.shot import Shot, ShotFrame
 from svgf_cl.job import Chunk, Done, Job, Style, in_layer, run, target_paths
 from svgf_cl.shot_denoiser import Method
+from svgf_cl.shot_walk import ShotWalk
 from tests.renderers import BLENDER_HEADER, NUMBERS, blender, moments, written
 
 
@@ -131,3 +132,17 @@ def test_a_run_leaves_its_input_as_it_was(sources: list[Path], tmp_path: Path) -
     done = list(run_all(job_of(sources, tmp_path / "out")))
     assert [path.read_bytes() for path in sources] == before
     assert read_image(done[0].target).windows == read_image(sources[0]).windows
+
+
+def test_no_standard_error_of_pictures_from_later_frames(sources: list[Path], tmp_path: Path) -> None:
+    with pytest.raises(SvgfError, match="standard_error: expected it off with --look-ahead"):
+        job_of(sources, tmp_path / "out", settings={"standard_error": True}, look_ahead=0)
+
+
+def test_nothing_is_filtered_behind_the_last_picture_that_is_written(
+    sources: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    walked = []
+    monkeypatch.setattr(ShotWalk, "begin", lambda self, *, backward: walked.append(backward))
+    list(run(job_of(sources, tmp_path / "out", look_ahead=1), Chunk(0, range(1), 2)))
+    assert walked == [False, True]

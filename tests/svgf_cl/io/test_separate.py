@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl import FileError, open_sequence
+from svgf_cl import FileError, SvgfError, open_sequence
 from svgf_cl.io.window import Window
 from tests.exr_files import exr_bytes
 from tests.renderers import (
@@ -87,10 +87,16 @@ def without_depth(folder: Path) -> Path:
 def test_a_frame_without_its_file_is_named(tmp_path: Path) -> None:
     pattern = one_each(tmp_path / "z", "z.", "depth", 1)
     (tmp_path / "z" / "z.0002.exr").unlink()
-    frames = open_sequence(without_depth(tmp_path / "shot"), separate={"depth": pattern})
-    assert frames[0].depth.any()
+    folder = without_depth(tmp_path / "shot")
+    separate = {"albedo": one_each(tmp_path / "a", "a.", "albedo", 3), "depth": pattern}
     with pytest.raises(FileError, match=r"z\.0001\.exr: expected a file of depth for frame 2 beside it, found none"):
-        frames[1]
+        open_sequence(folder, separate=separate)
+
+
+@pytest.mark.parametrize("field", ["color", "Depth", "motion_to_next"])
+def test_what_is_no_field_of_its_own_is_refused(field: str, tmp_path: Path) -> None:
+    with pytest.raises(SvgfError, match=f"separate: expected one of albedo, .*, got '{field}'"):
+        open_sequence(without_depth(tmp_path), separate={field: tmp_path})
 
 
 @pytest.mark.parametrize(
