@@ -190,8 +190,8 @@ def made(shot: Shot, job: Job, chunk: Chunk, look: Look | None) -> Iterator[tupl
 def made_forward(shot: Shot, method: Method, places: range, look: Look | None) -> Iterator[tuple[int, Made]]:
     """As `made`, from earlier frames alone."""
     denoiser = ShotDenoiser(shot.shape, method, len(shot.reading.lights))
-    typical = shot.typical()  # the same for all chunks, so that they are alike
-    denoiser.settle(typical.frame, typical.lights)
+    first, second = shot.beginning()  # the same for all chunks, so that they are alike
+    denoiser.settle(second.frame, second.lights, first.frame)
     for index, source in zip(places, ahead(map(shot.read, places), READ_AHEAD), strict=True):
         if look:
             look(shot, index, source)

@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from svgf_cl.check.noise import extremes
 from svgf_cl.denoisers import Denoisers
 from svgf_cl.filters import DEFAULT
 from svgf_cl.frame import Frame, Shape
@@ -104,16 +105,3 @@ def is_black_area(albedo: Array) -> npt.NDArray[np.bool_]:
     count = sum(padded[y : y + height, x : x + width] for y in range(3) for x in range(3))
     is_area: npt.NDArray[np.bool_] = (padded[1:-1, 1:-1] > 0) & (count > 4)
     return is_area[..., None]
-
-
-def extremes(value: Array) -> tuple[Array, Array]:
-    """The least and the greatest value (H, W, C) of each pixel and its eight neighbours; NaN does not count.
-
-    What is filtered stays between them, so nothing is left behind where motion is wrong.
-    """
-    padded = np.pad(value, ((1, 1), (1, 1), (0, 0)), mode="edge")
-    found = []
-    for choose in (np.fmin, np.fmax):
-        rows = choose(choose(padded[:-2], padded[1:-1]), padded[2:])
-        found.append(choose(choose(rows[:, :-2], rows[:, 1:-1]), rows[:, 2:]))
-    return found[0], found[1]

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from svgf_cl.check.noise import has_noisy_depth
+from svgf_cl.check.noise import has_noisy_depth, lacks_motion
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.temporal import TemporalFilter
 from svgf_cl.frame import Frame, Shape
@@ -61,16 +61,18 @@ class ShotDenoiser:
         self._shape = shape
         self._lights = LightsDenoiser(shape, method.settings, self._share)
         self._prefilter: Prefilter | None = None
-        self._is_settled = self._has_parts = False
+        self._is_settled = self._has_parts = self._lacks_motion = False
 
-    def settle(self, frame: Frame, lights: Sequence[Light] = ()) -> None:
+    def settle(self, frame: Frame, lights: Sequence[Light] = (), previous: Frame | None = None) -> None:
         """Tell from a frame what holds for all of the shot: how guides are filtered, and whether lights are parts.
 
-        By default that is the first frame that comes; a later one tells motion, too. Parameters are those of `denoise`.
+        By default that is the first frame that comes. With the frame before it, it tells whether motion is missing:
+        then each frame is filtered alone. Other parameters are those of `denoise`.
         """
+        self._lacks_motion = previous is not None and lacks_motion(frame, previous)
         if self._method.prefilter != "off":
             is_noisy = self._method.prefilter == "on" or has_noisy_depth(frame)
-            is_followed = bool(np.any(frame.motion))
+            is_followed = bool(np.any(frame.motion)) or not (previous is None or self._lacks_motion)
             self._prefilter = Prefilter(self._shape, is_noisy=is_noisy, is_followed=is_followed, share=self._share)
         if lights and self._method.lights:
             self._has_parts = is_sum(remainder(frame, [finite(light) for light in lights]))
@@ -98,6 +100,8 @@ class ShotDenoiser:
         """What is to be filtered of the next frame, with its guides filtered already; parameters of `denoise`."""
         if not self._is_settled:
             self.settle(frame, lights)
+        if self._lacks_motion:
+            frame = replace(frame, motion=np.full_like(frame.motion, np.nan))  # a pixel without history
         guided = self._prefilter.frame(frame) if self._prefilter else frame
         if not (lights and self._method.lights):
             return Parts(guided)

@@ -30,11 +30,11 @@ class ShotWalk:
 
     def __init__(self, shot: Shot, method: Method, places: range, look: Look | None = None) -> None:
         self._shot, self._places, self._look = shot, places, look
-        typical = shot.typical()  # the same for all chunks, so that they are alike
-        lights = len(typical.lights)
+        first, second = shot.beginning()  # the same for all chunks, so that they are alike
+        lights = len(second.lights)
         self.forward, self._backward = (ShotDenoiser(shot.shape, method, lights, share=0.5) for _ in range(2))
         for denoiser in (self.forward, self._backward):
-            denoiser.settle(typical.frame, typical.lights)
+            denoiser.settle(second.frame, second.lights, first.frame)
         self._parts: Parts | None = None
 
     @property

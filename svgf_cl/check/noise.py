@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from svgf_cl.frame import Frame
+
+Array = npt.NDArray[np.float32]
 
 LEAST_LENGTH = 1e-6  # of a normal
 # Along a row of pixels on a plane, one over depth rises evenly. By this share of it a pixel is off if depth is noisy.
 UNEVEN = 5e-4
 PLANE = 0.999  # cosine between normals of one plane
+APART = 0.05  # by which a pixel lies beyond all that was around it before
+MOVED = 0.1  # share of such pixels where things moved, and not noise alone
 HOLES = 0.02  # share of pixels that hit nothing between two that did: rays that were scattered before they hit
 
 
@@ -26,3 +31,29 @@ def has_noisy_depth(frame: Frame) -> bool:
     nearness = 1.0 / np.where(hit, frame.depth, 1.0).astype(np.float64)
     bend = np.abs(nearness[left] - 2.0 * nearness[middle] + nearness[right])[plane] / nearness[middle][plane]
     return bend.size > 0 and float(np.median(bend)) > UNEVEN
+
+
+def lacks_motion(frame: Frame, previous: Frame) -> bool:
+    """Whether motion is 0 in all of a frame, though surfaces are not where they were in the previous one.
+
+    So it is in frames of Blender with motion blur. Surfaces are told by their albedo, or by their normals.
+    """
+    if np.any(frame.motion):
+        return False
+    before, now = ((f.normal if f.albedo is None else f.albedo) for f in (previous, frame))
+    least, most = extremes(before)
+    beyond = np.maximum(least - now, now - most).max(axis=-1)
+    return bool((beyond > APART).mean() > MOVED)
+
+
+def extremes(value: Array) -> tuple[Array, Array]:
+    """The least and the greatest value (H, W, C) of each pixel and its eight neighbours; NaN does not count.
+
+    What is filtered stays between them, so nothing is left behind where motion is wrong.
+    """
+    padded = np.pad(value, ((1, 1), (1, 1), (0, 0)), mode="edge")
+    found = []
+    for choose in (np.fmin, np.fmax):
+        rows = choose(choose(padded[:-2], padded[1:-1]), padded[2:])
+        found.append(choose(choose(rows[:, :-2], rows[:, 1:-1]), rows[:, 2:]))
+    return found[0], found[1]

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from svgf_cl.check import Inspection
-from svgf_cl.check.noise import has_noisy_depth
+from svgf_cl.check.noise import lacks_motion
 from svgf_cl.check.values import SEEN
 from svgf_cl.check.view import FAR, has_normal, in_range
 from svgf_cl.errors import FileError
@@ -52,7 +52,7 @@ def described(shot: Shot, first: ShotFrame) -> str:
     return "; ".join(parts)
 
 
-BLURRED = "if anything moves, turn motion blur off, with which renderers write no motion, and blur the pictures later"
+BLURRED = "each frame is denoised alone; turn motion blur off, with which renderers write no motion, and blur later"
 
 
 class Remarks:
@@ -69,7 +69,8 @@ class Remarks:
     def __init__(self, total: int, *, check: bool) -> None:
         self._left = min(FIRST, total) if check else 0
         self._is_first = True
-        self._is_still = self._is_noisy = True
+        self._lacks_motion = False
+        self._last: Frame | None = None
         self._inspection = Inspection()
 
     def look(self, shot: Shot, index: int, source: ShotFrame) -> None:
@@ -83,12 +84,12 @@ class Remarks:
         if index in shot.cuts:
             self._inspection.cut()
         self._inspection.add(source.frame)
-        self._is_still &= not np.any(source.frame.motion)
-        self._is_noisy &= has_noisy_depth(source.frame)
+        self._lacks_motion |= self._last is not None and lacks_motion(source.frame, self._last)
+        self._last = source.frame
         self._left -= 1
         if not self._left:
             self._warn()
-            self._inspection = Inspection()  # what it held is free
+            self._inspection, self._last = Inspection(), None  # what they held is free
 
     def look_at_first(self, shot: Shot, places: range) -> None:
         """Look at the first of the frames of a shot before any of it is denoised."""
@@ -100,8 +101,8 @@ class Remarks:
         found = [f"{finding.field}: {finding.what}; {finding.cure}" for finding in report.findings]
         if not any(finding.field == "depth" for finding in report.findings):
             found += [f"depth: {unknown.why}" for unknown in report.unknown if unknown.topic == SEEN.topic]
-        if self._is_still and self._is_noisy:
-            found.append(f"motion: 0 in all pixels, though depth is noisy; {BLURRED}")
+        if self._lacks_motion:
+            found.append(f"motion: 0 in all pixels, though things move; {BLURRED}")
         for line in found:
             warnings.warn(line, stacklevel=2)
         if found:

@@ -164,13 +164,13 @@ class Shot(Sequence[Frame]):
         lights = tuple(self._light(path, planes, light, own) for light in self.reading.lights)
         return ShotFrame(path, image, moved(frame, own, self.window), lights)
 
-    def typical(self) -> ShotFrame:
-        """A frame that tells what holds for all of the shot: the second one, if it can be read, as it has motion."""
+    def beginning(self) -> tuple[ShotFrame, ShotFrame]:
+        """The first two frames, which tell what holds for all of the shot; the first one twice if there is no other."""
         first = self.read(0)
         try:
-            return self.read(1) if len(self) > 1 else first
+            return first, self.read(1) if len(self) > 1 else first
         except FileError:  # which is told when its turn comes
-            return first
+            return first, first
 
     def motion_to_next(self, source: ShotFrame) -> Picture | None:
         """The motion of a frame to the next one, (H, W, 2 or 3), where its file or the cameras tell it."""

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from svgf_cl import Frame
+from svgf_cl.check.noise import has_noisy_depth
 from svgf_cl.io.shot import Light
 from svgf_cl.io.synthetic import room_frame
-from svgf_cl.prefilter import BLACK, Prefilter, extremes, has_noisy_depth
+from svgf_cl.prefilter import BLACK, Prefilter, extremes
 
 SHAPE = (24, 40)
 FRAMES = 6

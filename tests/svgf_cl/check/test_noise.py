@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from svgf_cl import Frame
-from svgf_cl.check.noise import has_noisy_depth
+from svgf_cl.check.noise import has_noisy_depth, lacks_motion
 from svgf_cl.io.synthetic import room_frame
 
 SHAPE = (90, 160)
@@ -40,3 +40,22 @@ def test_a_sky_and_frames_that_are_too_small_are_not_noisy(room: Frame) -> None:
     assert not has_noisy_depth(replace(room, normal=np.zeros_like(room.normal)))
     assert not has_noisy_depth(room_frame((1, 1), 1, 0))
     assert not has_noisy_depth(room_frame((2, 2), 1, 0))
+
+
+def paved(room: Frame, number: int) -> Frame:
+    """A frame whose motion is 0, though its tiles of 6 pixels moved by 4 a frame."""
+    tiles = np.random.default_rng(4).uniform(0.1, 1.0, (SHAPE[0] // 6, SHAPE[1] // 6 + 1, 3))
+    albedo = np.roll(np.repeat(np.repeat(tiles, 6, 0), 6, 1)[:, : SHAPE[1]], 4 * number, axis=1).astype(np.float32)
+    return replace(room, albedo=albedo, motion=np.zeros_like(room.motion))
+
+
+def test_motion_that_is_lost_is_told_from_a_still_shot(room: Frame) -> None:
+    before, now = paved(room, 0), paved(room, 1)
+    assert lacks_motion(now, before)
+    assert not lacks_motion(replace(now, motion=room.motion - 4), before)
+    assert not lacks_motion(before, before)
+    normals = [replace(frame, albedo=None, normal=2 * frame.albedo - 1) for frame in (now, before)]
+    assert lacks_motion(*normals)
+    noise = np.random.default_rng(3).uniform(0.5, 1.0, (2, *SHAPE, 3)).astype(np.float32)
+    still = [replace(before, albedo=each * before.albedo) for each in noise]
+    assert not lacks_motion(*still), "noise alone is no motion"
