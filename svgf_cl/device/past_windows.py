@@ -106,8 +106,11 @@ def pair(values: NDArray[np.int64]) -> tuple[int, int]:
 
 def ends(motion: Motion, first: Corner, reach: Reach) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """The first and the last row and column that these pixels may read, if each had the least and greatest motion."""
-    yx = motion[..., 1::-1]
-    whole = known(yx.min(axis=(0, 1)), unknown=-FAR), known(yx.max(axis=(0, 1)), unknown=FAR)
+    along = motion[..., 1], motion[..., 0]
+    whole = (
+        known(np.array([each.min() for each in along]), unknown=-FAR),
+        known(np.array([each.max() for each in along]), unknown=FAR),
+    )
     last = np.array(first) + motion.shape[:2] - 1
     return first + whole[0] - reach.below, last + whole[1] + reach.above
 
