@@ -47,6 +47,7 @@ def test_they_say_the_same(data: st.DataObject, shape: tuple[int, ...], offset: 
         assert not is_apart(made) or len(set(each)) == len(each)
 
 
+@effort(20)
 @given(order=st.permutations(range(3)), signs=st.tuples(*[st.sampled_from((1, -1))] * 3))
 def test_any_order_of_axes_is_apart(order: list[int], signs: tuple[int, ...], buffer: cl.Buffer) -> None:
     strides, step = [0, 0, 0], 4
