@@ -17,20 +17,32 @@ WORD = 4  # bytes of an element, be it float32 or uint32
 class StridedCopies:
     """The kernel that copies images between layouts, for one queue and one thread at a time.
 
-    pyopencl refuses to copy an Array with strides, and OpenCL's own copies of rectangles cannot change the order of
-    axes.
+    pyopencl does not copy Arrays with strides. OpenCL's copies of rectangles cannot change the order of axes, and take
+    rows only at multiples of the distance between pixels.
     """
 
     def __init__(self, queue: cl.CommandQueue) -> None:
         self._queue = queue
+        self._by_rows = copies_rows(queue.device)
         program = programs.build(queue.context, queue.device, "strided_copy", {})
         self._kernel = cl.Kernel(program, "strided_copy")
 
     def enqueue(self, source: cl_array.Array, target: cl_array.Array) -> cl.Event:
         """Copy (H, W) or (H, W, C) elements; the two must not be the same memory."""
         height, width, channels = (*source.shape, 1)[:3]
-        self._kernel.set_args(np.int32(channels), layout(source), layout(target), buffer_of(source), buffer_of(target))
-        return cl.enqueue_nd_range_kernel(self._queue, self._kernel, (width, height), None)
+        # A work-group of one has Intel's compiler leave the loop over a row as it is: ten times as fast as with
+        # vectors that gather.
+        run, work_group = (width, (1, 1)) if self._by_rows else (1, None)
+        self._kernel.set_args(
+            *map(np.int32, (width, channels, run)),
+            *(layout(source), layout(target), buffer_of(source), buffer_of(target)),
+        )
+        return cl.enqueue_nd_range_kernel(self._queue, self._kernel, (width // run, height), work_group)
+
+
+def copies_rows(device: cl.Device) -> bool:
+    """Whether a work-item is to copy a row, not a pixel."""
+    return bool(device.type & cl.device_type.CPU)
 
 
 def buffer_of(array: cl_array.Array) -> cl.Buffer:

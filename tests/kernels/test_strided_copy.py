@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pyopencl as cl
 import pyopencl.array as cl_array
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
+from svgf_cl.device import strided
 from svgf_cl.device.strided import StridedCopies, is_apart, span
 from tests.fuzz.effort import effort
 
@@ -30,8 +32,10 @@ def layouts(draw: st.DrawFn, shape: tuple[int, ...]) -> tuple[int, tuple[int, ..
 
 
 @effort(30)
-@given(data=st.data(), shape=SIZES)
-def test_elements_reach_their_places(data: st.DataObject, shape: tuple[int, ...], queue: cl.CommandQueue) -> None:
+@given(data=st.data(), shape=SIZES, by_rows=st.booleans())
+def test_elements_reach_their_places(
+    data: st.DataObject, shape: tuple[int, ...], by_rows: bool, queue: cl.CommandQueue
+) -> None:
     arrays, memories = [], []
     for seed in range(2):
         offset, strides, nbytes = data.draw(layouts(shape))
@@ -43,7 +47,9 @@ def test_elements_reach_their_places(data: st.DataObject, shape: tuple[int, ...]
         np.ndarray(shape, np.uint32, memory, array.offset, array.strides)
         for array, memory in zip(arrays, memories, strict=True)
     )
-    StridedCopies(queue).enqueue(*arrays)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(strided, "copies_rows", lambda device: by_rows)  # as on a CPU, or as on a GPU
+        StridedCopies(queue).enqueue(*arrays)
     target[...] = source
     for array, memory in zip(arrays, memories, strict=True):
         assert is_apart(array)

@@ -240,6 +240,11 @@ class TestStrides:
         with pytest.raises(FrameError, match=rf"Frame\.depth: expected {message}"):
             den.denoise(replace(FRAME, depth=depth))
 
+    def test_an_array_of_nothing_is_refused(self, den: Denoiser) -> None:
+        depth = cl_array.empty(den.queue, (0, SHAPE[1]), np.float32)
+        with pytest.raises(FrameError, match=r"Frame\.depth: expected shape .*, got shape \(0, 37\)"):
+            den.denoise(replace(FRAME, depth=depth))
+
     @pytest.mark.parametrize("strides", [(0, 12, 4), (4, 4, 4), (12 * SHAPE[1], 12, 0), (12, 12 * SHAPE[0] - 4, 4)])
     def test_a_result_whose_elements_overlap_is_refused(self, strides: tuple[int, ...], den: Denoiser) -> None:
         data = cl.Buffer(den.queue.context, cl.mem_flags.READ_WRITE, 2 * FRAME.color.nbytes)
