@@ -76,11 +76,13 @@ class Parts:
         """Put the picture together from what `LightsDenoiser.filtered` made of the parts."""
         if self.rest is None:
             return Denoised(made[WHOLE], {}, error)
-        terms = [multiplied(made.get(light.channels, light.radiance), light.factor) for light in self.lights]
-        terms.append(np.minimum(self.rest, 0.0))
-        terms += [made[REST]] if REST in made else []
+        picture = np.minimum(self.rest, np.float32(0.0))
+        for light in self.lights:
+            picture += multiplied(made.get(light.channels, light.radiance), light.factor)
+        if REST in made:
+            picture += made[REST]
         lights = {light.channels: made.get(light.channels, light.radiance) for light in self.lights if light.filtered}
-        return Denoised(np.sum(terms, axis=0, dtype=np.float32), {**lights, **self.factors}, error)
+        return Denoised(picture, {**lights, **self.factors}, error)
 
 
 class LightsDenoiser:
