@@ -23,7 +23,7 @@ from svgf_cl.device.tiles import Tile
 from svgf_cl.device.tiling import Tiling
 from svgf_cl.filters.margins import margins
 from svgf_cl.filters.pipeline import Buffer, Resource, history_of
-from svgf_cl.filters.stages import stages
+from svgf_cl.filters.stages import Stage, stages
 from svgf_cl.plan import Workplace, launch, uploaded
 
 Events = list[tuple[str, cl.Event]]
@@ -82,7 +82,7 @@ class TilePlan:
         self._steps = list(self._made_ready())
         self._before, self._now = (HostPlanes(tiling.past, tiling.shape) for _ in range(2))
         self._results = HostPlanes(tiling.results, tiling.shape)
-        self._stages = {name: stage for name, stage in stages(pipeline).items() if stage.resource in tiling.results}
+        self._stages = {name: stage for name, stage in stages(pipeline).items() if self._kept(stage)}
         self._frame_number = 0
 
     @property
@@ -135,7 +135,11 @@ class TilePlan:
     def stage(self, name: str) -> NDArray[np.float32]:
         """One of `stages` of the last frame, as `Denoiser.stage` gives it."""
         stage = self._stages[name]
-        return stage.image(self._results.stack(stage.resource))
+        return stage.decoded(self._kept(stage)[0].of(stage.resource, stage.quantity))
+
+    def _kept(self, stage: Stage) -> list[HostPlanes]:
+        """What holds a stage of the last frame, which is the past of the next, if anything does."""
+        return [each for each in (self._before, self._results) if each.holds(stage.resource, stage.quantity)]
 
     def _made_ready(self) -> Iterator[Step]:
         pipeline = self.pipeline

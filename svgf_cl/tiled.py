@@ -205,7 +205,7 @@ class TiledDenoiser:
 
     @property
     def stages(self) -> list[str]:
-        """Names that `stage` understands: what the filter makes to be shown alone; none before the first frame."""
+        """Names that `stage` understands: what is kept for the next frame, or shown; none before the first."""
         with self._in_turn() as (plan, _):
             return plan.stages if self._events else []
 

@@ -50,9 +50,14 @@ class HostPlanes:
             for quantity, planes in kept.items():
                 planes[...] = 0 if quantity.unknown is None else quantity.format.encoded(quantity.unknown)
 
-    def stack(self, resource: Resource) -> NDArray[Any]:
-        """All planes that it holds of a resource, (n, H, W), a copy."""
-        return np.concatenate(list(self._planes[resource].values()))
+    def holds(self, resource: Resource, quantity: Quantity) -> bool:
+        """Whether it holds a quantity of a resource."""
+        return quantity in self._planes.get(resource, ())
+
+    def of(self, resource: Resource, quantity: Quantity) -> NDArray[Any]:
+        """What it holds of a quantity, (n, H, W), a copy."""
+        planes: NDArray[Any] = self._planes[resource][quantity].copy()
+        return planes
 
     def upload(self, queue: cl.CommandQueue, resource: Resource, to: Place, corner: Corner, size: Shape) -> None:
         """Copy the part of the image that begins at `corner` to a place on the device."""

@@ -22,9 +22,13 @@ class Stage:
 
         `planes` are those of the whole resource, as if all were of that format.
         """
+        first = self.resource.begin(self.quantity.name) // self.quantity.format.nbytes
+        return self.decoded(planes[first : first + self.quantity.planes])
+
+    def decoded(self, planes: np.ndarray) -> np.ndarray:
+        """The same of the planes of the quantity alone."""
         quantity = self.quantity
-        first = self.resource.begin(quantity.name) // quantity.format.nbytes
-        stack = planes[first : first + quantity.planes].reshape(-1, quantity.channels, *planes.shape[1:])
+        stack = planes.reshape(-1, quantity.channels, *planes.shape[1:])
         images = quantity.format.decoded(np.moveaxis(stack, 1, -1))
         if quantity.is_light:
             red, green, blue = LUMINANCE

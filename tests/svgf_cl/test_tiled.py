@@ -30,6 +30,7 @@ from svgf_cl import (
 from svgf_cl.device import tiling
 from svgf_cl.device.tiling import Tiling
 from svgf_cl.filters.filter import Filter
+from svgf_cl.filters.temporal import TemporalFilter
 from svgf_cl.frame import Shape
 from svgf_cl.tile_plan import TilePlan
 from tests.denoising import vector_width
@@ -91,6 +92,8 @@ def assert_same(chosen: Filter, frames: Sequence[Frame], tiled: TiledDenoiser, c
         assert_array_equal(found.view(np.uint32), expected.view(np.uint32), f"frame {number}")
         for name in tiled.stages:
             assert_array_equal(tiled.stage(name), whole.stage(name))
+        assert isinstance(chosen, TemporalFilter)
+        assert_array_equal(chosen.uncertainty(tiled.stage), chosen.uncertainty(whole.stage))
 
 
 @pytest.mark.usefixtures("no_slack")
@@ -201,7 +204,7 @@ def test_calls_that_cannot_be_right_are_refused() -> None:
         tiled.denoise(wall((5, 5)))
     with pytest.raises(SvgfError, match="expected a Frame"):
         tiled.denoise(out)  # type: ignore[arg-type]
-    with pytest.raises(SvgfError, match="stage: expected one of none in tiles"):
+    with pytest.raises(SvgfError, match=r"stage: expected one of .*history_length.* in tiles"):
         tiled.stage("variance")
     tiled.close()
     with pytest.raises(SvgfError, match="got one after close"):

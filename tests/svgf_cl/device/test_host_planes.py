@@ -44,9 +44,17 @@ def test_a_part_goes_there_and_comes_back(queue: cl.CommandQueue) -> None:
         assert np.count_nonzero(planes) == quantity.planes * 60
 
 
+def test_it_holds_what_it_was_made_for() -> None:
+    planes = HostPlanes({GUIDE: (DEPTH,)}, SHAPE)
+    other = Resource("other", "guide", (DEPTH,))
+    assert [planes.holds(*each) for each in ((GUIDE, DEPTH), (GUIDE, NORMAL), (other, DEPTH))] == [True, False, False]
+
+
 def test_it_forgets() -> None:
     planes = HostPlanes({GUIDE: (DEPTH,)}, SHAPE)
     planes._planes[GUIDE][DEPTH][...] = 7
+    known = planes.of(GUIDE, DEPTH)
     planes.forget()
-    assert (planes.stack(GUIDE) == -2).all()
+    assert (planes.of(GUIDE, DEPTH) == -2).all()
+    assert (known == 7).all()
     assert planes.nbytes == 2 * 4 * 23 * 37
