@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections import deque
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated
 
@@ -26,6 +27,8 @@ from svgf_cl.prefilter import EFFORTS, Effort
 from svgf_cl.shot_denoiser import Method
 
 Separate = Annotated[Path | None, typer.Option(metavar="FILES", help="Files of this field alone, by number.")]
+
+TIMED = 1000  # of the last frames, whose times are shown
 
 CHUNK_HELP = f"Cut the shot into chunks of N frames, each with its own warm-up. With --scheduler {CHUNK}, else one."
 SCHEDULER_HELP = "Denoise chunks on the workers of the Dask scheduler there, for example tcp://10.0.0.7:8786."
@@ -133,7 +136,8 @@ def denoise(
     )
     check_leftovers(folder, [*targets, *(png_of(target) for target in targets if png)])
     chunks = cut(job, selected, chunk or (CHUNK if scheduler else len(selected)), warm_up)
-    total, kept, times = len(selected), 0, []
+    total, kept = len(selected), 0
+    times: deque[Mapping[str, float]] = deque(maxlen=TIMED)
     for done in tracked(frames_done(job, chunks, scheduler, check), total, "denoising"):
         kept += done.kept
         times.append(done.times)

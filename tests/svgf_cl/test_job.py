@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,9 +12,11 @@ import pytest
 from svgf_cl import FileError, SvgfError
 from svgf_cl.filters import DEFAULT
 from svgf_cl.io.exr import read_channels, read_image
+from svgf_cl.io.frames import frame_path, write_frame
 from svgf_cl.io.sequence import find_frames
 from svgf_cl.io.shot import Shot, ShotFrame
-from svgf_cl.job import Chunk, Done, Job, Style, in_layer, run, target_paths
+from svgf_cl.io.synthetic import room_frames
+from svgf_cl.job import WRITERS, Chunk, Done, Job, Style, in_layer, run, target_paths
 from svgf_cl.shot_denoiser import Method
 from svgf_cl.shot_walk import ShotWalk
 from tests.renderers import BLENDER_HEADER, NUMBERS, blender, moments, written
@@ -64,6 +67,26 @@ def test_a_chunk_with_all_of_its_past_is_as_of_the_whole_shot(sources: list[Path
     for chunk in (Chunk(0, range(2), 2), Chunk(0, range(2, 3), 3)):
         assert [each.target for each in run(job, chunk)] == list(job.targets[chunk.written.start : chunk.written.stop])
     assert [target.read_bytes() for target in job.targets] == whole
+
+
+@pytest.mark.parametrize("look_ahead", [None, 2])
+def test_few_frames_are_held_however_many_there_are(look_ahead: int | None, tmp_path: Path) -> None:
+    paths = []
+    for number, frame in enumerate(room_frames((8, 12), 24)):
+        paths.append(frame_path(tmp_path / "in", number))
+        write_frame(paths[-1], frame)
+    alive: weakref.WeakSet[ShotFrame] = weakref.WeakSet()
+    most = 0
+
+    def look(shot: Shot, index: int, source: ShotFrame) -> None:
+        nonlocal most
+        alive.add(source)
+        most = max(most, len(alive))
+
+    job = job_of(paths, tmp_path / "out", look_ahead=look_ahead)
+    done = sum(1 for _ in run(job, Chunk(0, range(len(paths)), len(paths)), look))
+    assert done == len(paths)
+    assert most <= 2 + WRITERS
 
 
 @pytest.mark.parametrize("frames", [1, 2, 0])
