@@ -160,7 +160,7 @@ def denoise(
         kept += done.kept
         times.append(done.times)
     show_times(times)
-    print(f"{total} frames in {folder}{kept_of(kept)}")
+    print(f"{total} {'frame' if total == 1 else 'frames'} in {folder}{kept_of(kept)}")
 
 
 def parse_effort(text: str) -> Effort:

@@ -17,7 +17,9 @@ from svgf_cl.io.separate import SeparateFiles
 from svgf_cl.io.shot import Shot
 from svgf_cl.io.synthetic import room_frames
 from svgf_cl.shot_walk import ShotWalk
+from tests import renderers
 from tests.command_line import run
+from tests.renderers import BLENDER_HEADER, blender, moments
 
 SHAPE = (90, 160)
 PLAIN = ["R", "G", "B", "normal.X", "normal.Y", "normal.Z", "depth.Z", "motion.X", "motion.Y"]
@@ -201,3 +203,14 @@ def test_a_field_of_its_own_is_said_with_its_file(tmp_path: Path) -> None:
     write_channels(tmp_path / "albedo.0000.exr", {name: np.ones((3, 4), np.float32) for name in "RGB"})
     shot = Shot([tmp_path / "frame.0000.exr"], separate=SeparateFiles.of({"albedo": tmp_path / "albedo.####.exr"}))
     assert "albedo (albedo.0000.exr)" in described(shot, shot.read(0))
+
+
+def test_what_every_chunk_warns_of_is_said_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    planes = {at.number: blender(at) for at in moments()}
+    brighter = {
+        number: {name: 2 * plane if ".DiffDir." in name else plane for name, plane in channels.items()}
+        for number, channels in planes.items()
+    }
+    folder = renderers.written(tmp_path / "shot", brighter, BLENDER_HEADER)
+    _, err = said(capsys, folder, "-o", tmp_path / "out", "--chunk", "1", "--warm-up", "0")
+    assert err.count("the light passes add up to more than the picture") == 1
