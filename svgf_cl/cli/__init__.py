@@ -132,7 +132,7 @@ def leave(app: typer.Typer, arguments: Sequence[str], name: str, usage: str) -> 
 
 @contextmanager
 def plain_warnings(name: str) -> Iterator[None]:
-    """Inside, what is meant for the user is said once, in one line on stderr; Python would also show where it is from."""
+    """Inside, what is meant for the user is said once, in one line on stderr; Python would add where it is from."""
     told: set[str] = set()  # each chunk of a shot may warn of the same
     with warnings.catch_warnings():
         usual = warnings.showwarning
