@@ -83,7 +83,7 @@ def written(
     """Write a shot."""
     paths = [frame_path(folder, number) for number in range(frames)]
     for path, frame in zip(paths, room_frames(shape, frames, signals=2), strict=True):
-        write_channels(path, {name: np.ascontiguousarray(plane) for name, plane in channels(path, frame).items()})
+        write_channels(path, channels(path, frame))
     return paths
 
 

@@ -22,6 +22,7 @@ from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.shot import Light
 
 Array = npt.NDArray[np.float32]
+# Whether guides other than albedo are filtered: "auto" where depth is noisy, "on" always; "off" leaves albedo, too.
 Effort = Literal["auto", "on", "off"]
 EFFORTS: tuple[Effort, ...] = ("auto", "on", "off")
 
@@ -38,7 +39,7 @@ class Prefilter:
     shape : (int, int)
         (height, width) in pixels.
     is_noisy : bool
-        Whether depth is filtered, too; albedo always is.
+        Whether depth is filtered, too, and holes in normals are filled; albedo always is filtered.
     is_followed : bool
         Whether motion is known, so that factors of lights, and light that is seen directly, are filtered like depth.
         They hold textures, which would be smeared if they moved and motion were 0, as with Blender's motion blur.

@@ -32,8 +32,8 @@ class Method:
     lights : bool
         Whether the light passes that a picture is the sum of are denoised one by one; else the picture as a whole.
     prefilter : {"auto", "on", "off"}
-        Whether noise is taken out of depth and the factors of light passes: "auto" does it where the depth of the first
-        frame is noisy. Albedo is filtered unless it is "off".
+        Whether noise is taken out of depth and the factors of light passes, and holes in normals are filled: "auto"
+        does it where the depth of the shot is noisy. Albedo is filtered unless it is "off".
     """
 
     settings: Filter

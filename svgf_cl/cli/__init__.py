@@ -132,13 +132,17 @@ def leave(app: typer.Typer, arguments: Sequence[str], name: str, usage: str) -> 
 
 @contextmanager
 def plain_warnings(name: str) -> Iterator[None]:
-    """Inside, what is meant for the user is one line on stderr; Python would also show where in the code it is."""
+    """Inside, what is meant for the user is said once, in one line on stderr; Python would add where it is from."""
+    told: set[str] = set()  # each chunk of a shot may warn of the same
     with warnings.catch_warnings():
         usual = warnings.showwarning
 
         def show(message: Warning | str, category: type[Warning], *where: Any, **rest: Any) -> None:
             if category is UserWarning:
-                print(f"{name}: warning: {printable(one_line(message))}", file=sys.stderr)
+                text = printable(one_line(message))
+                if text not in told:
+                    print(f"{name}: warning: {text}", file=sys.stderr)
+                told.add(text)
             else:
                 usual(message, category, *where, **rest)
 

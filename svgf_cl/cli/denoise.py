@@ -26,11 +26,19 @@ from svgf_cl.job import Chunk, Done, Job, Style, png_of, run, target_paths
 from svgf_cl.prefilter import EFFORTS, Effort
 from svgf_cl.shot_denoiser import Method
 
-Separate = Annotated[Path | None, typer.Option(metavar="FILES", help="Files of this field alone, by number.")]
+SEPARATE_HELP = "Read this field from files of its own."
+Separate = Annotated[Path | None, typer.Option(metavar="FILES", help=SEPARATE_HELP)]
 
 TIMED = 1000  # of the last frames, whose times are shown
 
-CHUNK_HELP = f"Cut the shot into chunks of N frames, each with its own warm-up. With --scheduler {CHUNK}, else one."
+CHUNK_HELP = (
+    "Denoise the shot in chunks of N frames, each with its own warm-up. "
+    f"Default: {CHUNK} with --scheduler; else the shot is one chunk."
+)
+PREFILTER_HELP = (
+    "Denoise albedo; and, where depth is noisy as under depth of field, also depth and the color passes that light "
+    "passes are multiplied by, and fill holes in normals. on: take depth to be noisy. off: none of it."
+)
 SCHEDULER_HELP = "Denoise chunks on the workers of the Dask scheduler there, for example tcp://10.0.0.7:8786."
 
 
@@ -47,7 +55,11 @@ def denoise(
     span: Annotated[str | None, typer.Option("--frames", metavar="FIRST-LAST", help="Only these frames.")] = None,
     warm_up: Annotated[
         int,
-        typer.Option(min=0, metavar="N", help="Filter N more frames before the first of --frames or of a chunk."),
+        typer.Option(
+            min=0,
+            metavar="N",
+            help="Also filter, but do not write, the N frames before the first of --frames or of a chunk.",
+        ),
     ] = WARM_UP,
     chunk: Annotated[int | None, typer.Option(min=1, metavar="N", help=CHUNK_HELP)] = None,
     scheduler: Annotated[str | None, typer.Option(metavar="ADDRESS", help=SCHEDULER_HELP)] = None,
@@ -55,23 +67,32 @@ def denoise(
         str | None,
         typer.Option(
             metavar="N|all",
-            help="Make each picture from N later frames, too, or all of the shot: steadier, three times as slow.",
+            help="Also use the next N frames for each picture, or all later ones: steadier, but three times as slow.",
         ),
     ] = None,
     lights: Annotated[
         bool,
-        typer.Option("--passes/--no-passes", help="Denoise light passes, too, so that they add up to the picture."),
+        typer.Option(
+            "--passes/--no-passes",
+            help="Denoise light passes one by one, so that they still add up to the picture; else the picture alone.",
+        ),
     ] = True,
     prefilter: Annotated[
         str,
         typer.Option(
-            metavar="on|off|auto", help="Take noise out of normals, depth and factors of passes: under depth of field."
+            metavar="on|off|auto",
+            help=PREFILTER_HELP,
         ),
     ] = "auto",
     layer: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Add what is denoised as a layer; leave the rest as it is.")
+        str | None,
+        typer.Option(
+            metavar="NAME", help="Write what is denoised to a new layer beside the noisy channels, which stay."
+        ),
     ] = None,
-    plain: Annotated[bool, typer.Option("--plain", help="Write no other channel of the frame's file.")] = False,
+    plain: Annotated[
+        bool, typer.Option("--plain", help="Write the picture alone, as R G B, and no other channel.")
+    ] = False,
     png: Annotated[bool, typer.Option("--png", help="Also write every picture tone-mapped as PNG.")] = False,
     exposure: Exposure = 0.0,
     allow_gaps: AllowGaps = False,
@@ -80,13 +101,14 @@ def denoise(
     maps: reading.Maps = [],  # noqa: B006
     view_layer: reading.ViewLayer = None,
     color: Annotated[
-        Path | None, typer.Option(metavar="FILES", help="The same as FRAMES, where each pass has files of its own.")
+        Path | None,
+        typer.Option(metavar="FILES", help="The same as FRAMES: the picture, where each pass has files of its own."),
     ] = None,
     albedo: Separate = None,
     normal: Separate = None,
     depth: Separate = None,
     motion: Separate = None,
-    id_: Annotated[Path | None, typer.Option("--id", metavar="FILES", help="Files of this field alone.")] = None,
+    id_: Annotated[Path | None, typer.Option("--id", metavar="FILES", help=SEPARATE_HELP)] = None,
     cameras: reading.Cameras = None,
     still_camera: reading.StillCamera = False,
     motion_scale: reading.MotionScale = 1.0,
@@ -106,7 +128,7 @@ def denoise(
     Examples:
       svgf-cl denoise 'shot/####.exr' -o 'out/####.exr'
       svgf-cl denoise shot -o out --layer Denoised              # beside the noisy passes
-      svgf-cl denoise shot -o out --frames 101-150              # a stretch that fits to those of other machines
+      svgf-cl denoise shot -o out --frames 101-150              # a part; other machines can do the others
       svgf-cl denoise shot -o out --scheduler tcp://10.0.0.7:8786
       svgf-cl denoise --color 'beauty.####.exr' --albedo 'albedo.####.exr' --normal 'N.####.exr' --depth 'Z.####.exr' \\
                       --motion 'mv.####.exr' -o out
@@ -142,11 +164,11 @@ def denoise(
         kept += done.kept
         times.append(done.times)
     show_times(times)
-    print(f"{total} frames in {folder}{kept_of(kept)}")
+    print(f"{total} {'frame' if total == 1 else 'frames'} in {folder}{kept_of(kept)}")
 
 
 def parse_effort(text: str) -> Effort:
-    """Read how much is filtered beforehand."""
+    """Read which guides are denoised."""
     for effort in EFFORTS:
         if text == effort:
             return effort

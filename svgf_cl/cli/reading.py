@@ -17,34 +17,38 @@ from svgf_cl.io.reading import ReadAs
 Format = Annotated[
     str | None,
     typer.Option(
-        "--format", metavar="NAME", help=f"Renderer of the frames: {' or '.join(READERS)}. Told from the first file."
+        "--format",
+        metavar="NAME",
+        help=f"Renderer of the frames: {' or '.join(READERS)}. By default it is told from the first file.",
     ),
 ]
 Maps = Annotated[
     list[str],
     typer.Option(
-        "--map", metavar="FIELD=PASS", help="Read a field from another pass: --map depth=Z,normal=N. May be repeated."
+        "--map",
+        metavar="FIELD=PASS",
+        help="Read a field from a pass of another name: --map depth=Z,normal=N. May be repeated.",
     ),
 ]
 ViewLayer = Annotated[
-    str | None, typer.Option("--view-layer", metavar="NAME", help="Which one to read of a file that has several.")
+    str | None, typer.Option("--view-layer", metavar="NAME", help="View layer to read, if files have several.")
 ]
 Cameras = Annotated[
     Path | None,
     typer.Option(
         "--cameras",
         metavar="FILE",
-        help=f"Cameras of the frames, where files have no motion; {NAME} beside the frames is found.",
+        help=f"Cameras to compute motion and depth from, if files lack them. By default {NAME} beside the frames.",
     ),
 ]
 StillCamera = Annotated[
-    bool, typer.Option("--still-camera", help="Where nothing tells motion, take camera and all things to stand still.")
+    bool, typer.Option("--still-camera", help="If neither files nor cameras tell motion: nothing moves.")
 ]
 MotionScale = Annotated[
-    float, typer.Option("--motion-scale", metavar="X", help="Multiply motion, to have it in pixels.")
+    float, typer.Option("--motion-scale", metavar="X", help="Multiply motion by X, if it is not in pixels.")
 ]
 MotionFlip = Annotated[
-    str, typer.Option("--motion-flip", metavar="AXES", help="Turn axes of motion round: x, y or xy.")
+    str, typer.Option("--motion-flip", metavar="AXES", help="Reverse the sign of motion along x, y or xy.")
 ]
 
 

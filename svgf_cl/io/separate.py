@@ -10,6 +10,7 @@ from svgf_cl.errors import FileError, SvgfError, shown
 from svgf_cl.frame import CHANNELS
 from svgf_cl.io.exr import read_image
 from svgf_cl.io.image import Image, Plane
+from svgf_cl.io.look_alikes import grouped
 from svgf_cl.io.readers.passes import PLACES, by_view_layer
 from svgf_cl.io.readers.reader import HELPERS
 from svgf_cl.io.sequence import find_frames, number_of
@@ -90,5 +91,5 @@ def pass_of(path: Path, image: Image) -> Sequence[str]:
     passes = [(name, channels) for layer in by_view_layer(image.planes).values() for name, channels in layer.items()]
     pictures = [channels for name, channels in passes if not name]
     if len(passes) != 1 and len(pictures) != 1:
-        raise FileError(f"{path}: expected one pass, or R G B, found {' '.join(image.planes)}")
+        raise FileError(f"{path}: expected one pass, or R G B, found {grouped(image.planes)}")
     return pictures[0] if pictures else passes[0][1]

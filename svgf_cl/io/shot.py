@@ -13,14 +13,15 @@ import numpy as np
 import numpy.typing as npt
 
 from svgf_cl.camera import Camera, motion_from_cameras
-from svgf_cl.errors import ArgumentError, FileError
+from svgf_cl.errors import FileError
 from svgf_cl.frame import Frame, Shape
-from svgf_cl.io.cameras import camera_of_header, cameras_beside, read_cameras
-from svgf_cl.io.exr import MAX_DISPLAY, read_attributes, read_image, read_windows
-from svgf_cl.io.image import Image, Plane, Windows
+from svgf_cl.io.cameras import cameras_beside
+from svgf_cl.io.exr import MAX_DISPLAY, read_image, read_windows
+from svgf_cl.io.image import Image, Plane
 from svgf_cl.io.reading import LightPass, ReadAs, Reading, stacked
 from svgf_cl.io.separate import SeparateFiles
 from svgf_cl.io.sequence import after_gaps, find_frames, number_of
+from svgf_cl.io.shot_cameras import ShotCameras
 from svgf_cl.io.window import Window, placed, union
 
 Picture = npt.NDArray[np.float32]
@@ -116,15 +117,17 @@ class Shot(Sequence[Frame]):
         self.separate.require([number_of(path) for path in self.paths])
         first = read_image(self.paths[0])
         self.reading = Reading(self.paths[0], first, how or ReadAs(), self.separate.channels(number_of(self.paths[0])))
-        self._display = first.windows.display
-        self._cameras: dict[int, Camera | None] = {}
+        given = self.reading.how.cameras
+        self._cameras = ShotCameras(
+            self.paths, self.camera_file or ({} if isinstance(given, Path) else given), first.windows.display
+        )
         self._fields: set[str] | None = None
 
     @cached_property
     def camera_file(self) -> Path | None:
         """The file that cameras are read from, where depth or motion is computed from them."""
         given = self.reading.how.cameras
-        if {"depth", "motion"} <= self.reading.sources.keys():
+        if not self._needs_cameras:
             return None
         return given if isinstance(given, Path) else None if given else cameras_beside(self.paths[0])
 
@@ -157,7 +160,7 @@ class Shot(Sequence[Frame]):
         path = self.paths[index]
         image = read_image(path)
         planes = {**image.planes, **self.separate.planes(number_of(path), image.windows.data)}
-        frame = self.reading.frame(path, planes, *self._cameras_at(index, image.windows))
+        frame = self.reading.frame(path, planes, *self._cameras_at(index, image.windows.data))
         self._check_fields(path, frame)
         check_usable(path, frame)
         own = image.windows.data
@@ -179,51 +182,22 @@ class Shot(Sequence[Frame]):
             return placed(motion, image.windows.data, self.window, 0.0)
         if "motion" in self.reading.sources:
             return None
-        windows = Windows(self.window, self._display)
-        camera, following = (self._shifted(self._camera(number_of(path) + step), windows) for step in (0, 1))
+        camera, following = (self._cameras.at(number_of(path) + step, self.window) for step in (0, 1))
         if camera is None or following is None:
             return None
         return motion_from_cameras(camera, following, depth=source.frame.depth)
 
-    def _cameras_at(self, index: int, windows: Windows) -> tuple[Camera | None, Camera | None]:
+    def _cameras_at(self, index: int, window: Window) -> tuple[Camera | None, Camera | None]:
         """The cameras of a frame and of the one before, where fields are computed from them."""
-        if {"depth", "motion"} <= self.reading.sources.keys():
+        if not self._needs_cameras:
             return None, None
         number = number_of(self.paths[index])
-        return self._shifted(self._camera(number), windows), self._shifted(self._camera(number - 1), windows)
+        return self._cameras.at(number, window), self._cameras.at(number - 1, window)
 
-    def _camera(self, number: int) -> Camera | None:
-        """The camera of a frame by its number: as the user or a file beside it has it, or as its own header has it."""
-        if number not in self._cameras:
-            camera = self._given_cameras.get(number)
-            if camera is None and number in self._numbered:
-                camera = self._camera_in(self._numbered[number])
-            self._cameras[number] = camera
-        return self._cameras[number]
-
-    def _camera_in(self, path: Path) -> Camera | None:
-        """The camera in the header of a frame's file, if there is one."""
-        try:
-            return camera_of_header(read_attributes(path), (self._display.height, self._display.width))
-        except ArgumentError as error:
-            raise FileError(f"{path}: {error}; give the camera in cameras.json or with --cameras FILE") from error
-
-    @cached_property
-    def _numbered(self) -> Mapping[int, Path]:
-        """The files by the numbers of their frames."""
-        return {number_of(path): path for path in self.paths}
-
-    @cached_property
-    def _given_cameras(self) -> Mapping[int, Camera]:
-        if self.camera_file:
-            return read_cameras(self.camera_file, (self._display.height, self._display.width))
-        return {} if isinstance(self.reading.how.cameras, Path) else self.reading.how.cameras
-
-    def _shifted(self, camera: Camera | None, windows: Windows) -> Camera | None:
-        """A camera whose pixels count from the corner of a data window."""
-        if camera is None:
-            return None
-        return camera.cropped(windows.data.x - windows.display.x, windows.data.y - windows.display.y)
+    @property
+    def _needs_cameras(self) -> bool:
+        """Whether files lack what is computed from cameras."""
+        return not {"depth", "motion"} <= self.reading.sources.keys()
 
     def _light(self, path: Path, planes: Mapping[str, Plane], light: LightPass, own: Window) -> Light:
         """A light of a file, on the window of the shot."""

@@ -13,9 +13,13 @@ from svgf_cl.cli import remarks
 from svgf_cl.cli.remarks import described
 from svgf_cl.io.exr import read_channels, write_channels
 from svgf_cl.io.frames import frame_path, write_frame
+from svgf_cl.io.separate import SeparateFiles
 from svgf_cl.io.shot import Shot
 from svgf_cl.io.synthetic import room_frames
+from svgf_cl.shot_walk import ShotWalk
+from tests import renderers
 from tests.command_line import run
+from tests.renderers import BLENDER_HEADER, blender, moments
 
 SHAPE = (90, 160)
 PLAIN = ["R", "G", "B", "normal.X", "normal.Y", "normal.Z", "depth.Z", "motion.X", "motion.Y"]
@@ -179,3 +183,37 @@ def test_motion_that_motion_blur_left_out_is_said(
     assert (
         "turn motion blur off" not in said(capsys, written(tmp_path / "in3", still[:1] * 4), "-o", tmp_path / "out3")[1]
     )
+
+
+def test_a_mistake_is_said_before_later_frames_are_filtered(
+    tmp_path: Path, room: list[Frame], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object, **__: object) -> None:
+        raise SvgfError("filtered")
+
+    folder = written(tmp_path / "shot", changed(room, "normal", lambda normal: 0.5 * normal + 0.5))
+    monkeypatch.setattr(ShotWalk, "estimates", fail)
+    assert run("denoise", folder, "-o", tmp_path / "out", "--look-ahead", "all") == 2
+    captured = capsys.readouterr()
+    assert "read as" in captured.out
+    assert "warning: normal: encoded" in captured.err
+    assert captured.err.endswith("filtered\n")
+
+
+def test_a_field_of_its_own_is_said_with_its_file(tmp_path: Path) -> None:
+    planes = {name: np.ones((3, 4), np.float32) for name in PLAIN}
+    write_channels(tmp_path / "frame.0000.exr", planes)
+    write_channels(tmp_path / "albedo.0000.exr", {name: np.ones((3, 4), np.float32) for name in "RGB"})
+    shot = Shot([tmp_path / "frame.0000.exr"], separate=SeparateFiles.of({"albedo": tmp_path / "albedo.####.exr"}))
+    assert "albedo (albedo.0000.exr)" in described(shot, shot.read(0))
+
+
+def test_what_every_chunk_warns_of_is_said_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    planes = {at.number: blender(at) for at in moments()}
+    brighter = {
+        number: {name: 2 * plane if ".DiffDir." in name else plane for name, plane in channels.items()}
+        for number, channels in planes.items()
+    }
+    folder = renderers.written(tmp_path / "shot", brighter, BLENDER_HEADER)
+    _, err = said(capsys, folder, "-o", tmp_path / "out", "--chunk", "1", "--warm-up", "0")
+    assert err.count("the light passes add up to more than the picture") == 1
