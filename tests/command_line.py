@@ -26,9 +26,10 @@ from svgf_cl.cli import main
 left, folder, rename = int(sys.argv[1]), Path(sys.argv[2]), os.replace
 def rename_or_die(source, target):
     global left
-    left -= str(target).endswith(".exr")
-    if left < 0:
-        os.kill(os.getpid(), signal.{signal})
+    if str(target).endswith(".exr"):
+        left -= 1
+        if left == -1:  # once, as several threads write
+            os.kill(os.getpid(), signal.{signal})
     rename(source, target)
 os.replace, cache.cache_folder = rename_or_die, lambda: folder
 main(sys.argv[3:])
@@ -68,7 +69,7 @@ def assert_goes_on(command: tuple[str | Path, ...], killed: tuple[int, ...], fol
         run_killed(after, *command, "-o", broken, first=first)
         left = contents(broken)
         hidden = [name for name in left if Path(name).name.startswith(".")]
-        assert len(hidden) == 1, "what it was writing"
+        assert 1 <= len(hidden) <= 4, "what it was writing, in two threads at most"
         assert left.items() - {(name, left[name]) for name in hidden} <= whole.items()
     done = {path: path.stat() for path in broken.rglob("[!.]*.exr")}
     assert len(done) == sum(killed)

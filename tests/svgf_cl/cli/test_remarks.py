@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl import Frame
+from svgf_cl import Frame, SvgfError
 from svgf_cl.cli import remarks
 from svgf_cl.cli.remarks import described
 from svgf_cl.io.exr import read_channels, write_channels
