@@ -9,7 +9,7 @@ from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
 
-LIBRARIES = ("numpy", "OpenImageIO", "pyopencl")
+LIBRARIES = ("numpy", "OpenEXR", "pyopencl")
 
 
 def code_version(sources: Iterable[tuple[str, str]], libraries: Iterable[str]) -> str:
