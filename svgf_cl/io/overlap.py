@@ -46,8 +46,8 @@ def ahead(items: Iterable[Item], count: int) -> Iterator[Item]:
 def in_order(function: Callable[[Item], Result], items: Iterable[Item], count: int) -> Iterator[Result]:
     """Apply a function to items, in up to `count` threads at once, and yield the results in the order of the items.
 
-    What the function raises is raised here, in its place among the results. Where the caller stops early, the calls in
-    progress still end, and none begins.
+    What the function raises is raised here, in its place among the results. Where that, or the items, or the caller end
+    it early, each item that was taken is still done, and no other is taken.
 
     Parameters
     ----------
@@ -67,4 +67,4 @@ def in_order(function: Callable[[Item], Result], items: Iterable[Item], count: i
             waiting.extend(pool.submit(function, item) for item in islice(source, 1))
             yield result
     finally:
-        pool.shutdown(cancel_futures=True)
+        pool.shutdown()  # what was taken from the items is done
