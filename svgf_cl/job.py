@@ -14,7 +14,7 @@ from svgf_cl.io.display import write_image as write_png
 from svgf_cl.io.exr import write_image
 from svgf_cl.io.image import Image
 from svgf_cl.io.layers import RGB
-from svgf_cl.io.overlap import ahead, in_order
+from svgf_cl.io.overlap import in_order
 from svgf_cl.io.patterns import has_number, numbered
 from svgf_cl.io.pictures import channels, denoised_file, holds
 from svgf_cl.io.reading import ReadAs
@@ -27,7 +27,9 @@ from svgf_cl.look_ahead import both_ways
 from svgf_cl.shot_denoiser import Method, ShotDenoiser
 from svgf_cl.shot_walk import Look, ShotWalk
 
-READ_AHEAD, WRITERS = 2, 2  # frames that are read before they are filtered, and written at a time
+# Frames that are read at once, and as many that are written, while one is filtered.
+# Compression takes most of the time and uses one thread a frame; more frames take more memory.
+AT_ONCE = min(4, max(2, (os.cpu_count() or 1) // 2))
 
 
 @dataclass(frozen=True)
@@ -172,7 +174,7 @@ def run(job: Job, chunk: Chunk, look: Look | None = None) -> Iterator[Done]:
     shot = Shot(job.paths, job.how, job.separate)
     frames = made(shot, job, chunk, look)
     wanted = ((job.targets[index], frame) for index, frame in frames if index in chunk.written)
-    yield from in_order(lambda each: finished(shot, job.style, *each), wanted, WRITERS)
+    yield from in_order(lambda each: finished(shot, job.style, *each), wanted, AT_ONCE)
 
 
 def made(shot: Shot, job: Job, chunk: Chunk, look: Look | None) -> Iterator[tuple[int, Made]]:
@@ -192,7 +194,7 @@ def made_forward(shot: Shot, method: Method, places: range, look: Look | None) -
     denoiser = ShotDenoiser(shot.shape, method, len(shot.reading.lights))
     first, second = shot.beginning()  # the same for all chunks, so that they are alike
     denoiser.settle(second.frame, second.lights, first.frame)
-    for index, source in zip(places, ahead(map(shot.read, places), READ_AHEAD), strict=True):
+    for index, source in zip(places, in_order(shot.read, places, AT_ONCE), strict=True):
         if look:
             look(shot, index, source)
         if index in shot.cuts:

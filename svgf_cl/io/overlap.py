@@ -15,34 +15,6 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 
-def ahead(items: Iterable[Item], count: int) -> Iterator[Item]:
-    """Iterate in another thread, up to `count` items before they are asked for.
-
-    What iterating raises is raised here, in its place among the items. Where the caller stops early, be it by Ctrl-C,
-    the item in progress is still made, and none after it.
-
-    Parameters
-    ----------
-    items : iterable
-        No other thread may use it meanwhile.
-    count : int
-        At least 1. As many items are in memory, beside the one that the caller has.
-    """
-    source, end = iter(items), object()
-
-    def more() -> Item | object:
-        return next(source, end)
-
-    pool = ThreadPoolExecutor(1)
-    try:
-        waiting = deque(pool.submit(more) for _ in range(count))
-        while (item := waiting.popleft().result()) is not end:
-            waiting.append(pool.submit(more))
-            yield item  # type: ignore[misc]  # as it is not the end
-    finally:
-        pool.shutdown(cancel_futures=True)
-
-
 def in_order(function: Callable[[Item], Result], items: Iterable[Item], count: int) -> Iterator[Result]:
     """Apply a function to items, in up to `count` threads at once, and yield the results in the order of the items.
 

@@ -16,7 +16,7 @@ from svgf_cl.io.frames import frame_path, write_frame
 from svgf_cl.io.sequence import find_frames
 from svgf_cl.io.shot import Shot, ShotFrame
 from svgf_cl.io.synthetic import room_frames
-from svgf_cl.job import WRITERS, Chunk, Done, Job, Style, in_layer, run, target_paths
+from svgf_cl.job import AT_ONCE, Chunk, Done, Job, Style, in_layer, run, target_paths
 from svgf_cl.shot_denoiser import Method
 from svgf_cl.shot_walk import ShotWalk
 from tests.renderers import BLENDER_HEADER, NUMBERS, blender, moments, written
@@ -86,7 +86,7 @@ def test_few_frames_are_held_however_many_there_are(look_ahead: int | None, tmp_
     job = job_of(paths, tmp_path / "out", look_ahead=look_ahead)
     done = sum(1 for _ in run(job, Chunk(0, range(len(paths)), len(paths)), look))
     assert done == len(paths)
-    assert most <= 2 + WRITERS
+    assert most <= 2 + 2 * AT_ONCE
 
 
 @pytest.mark.parametrize("frames", [1, 2, 0])

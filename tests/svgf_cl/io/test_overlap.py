@@ -8,7 +8,7 @@ import subprocess
 import sys
 import threading
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import pytest
@@ -16,7 +16,7 @@ import pytest
 from svgf_cl import FileError
 from svgf_cl.cli import plain_warnings
 from svgf_cl.io.exr import read_channels
-from svgf_cl.io.overlap import ahead, in_order
+from svgf_cl.io.overlap import in_order
 
 SECONDS = 20  # that no test takes unless it hangs
 
@@ -47,32 +47,24 @@ def doubled(items: Iterable[int], count: int) -> Iterator[int]:
 @pytest.mark.parametrize("count", [1, 3, 50])
 @pytest.mark.parametrize("length", [0, 1, 20])
 def test_all_items_come_in_order(length: int, count: int) -> None:
-    assert list(ahead(Source(length), count)) == list(range(length))
     assert list(doubled(Source(length), count)) == list(range(0, 2 * length, 2))
 
 
 @pytest.mark.parametrize("count", [1, 4])
-def test_no_more_items_are_made_than_asked_for(count: int) -> None:
+def test_no_more_items_are_taken_than_asked_for(count: int) -> None:
     source = Source(50)
-    items = ahead(source, count)
+    items = doubled(source, count)
     assert source.taken == 0
     for number in range(10):
-        assert next(items) == number
+        assert next(items) == 2 * number
         assert source.taken <= number + 1 + count
     items.close()
-    assert threading.get_ident() not in source.threads
-    assert len(source.threads) == 1
+    assert source.threads == {threading.get_ident()}
 
 
-def test_the_next_item_is_made_while_the_caller_has_one() -> None:
+def test_the_next_call_is_made_while_the_caller_has_a_result() -> None:
     made = [threading.Event() for _ in range(3)]
-
-    def source() -> Iterator[int]:
-        for number, event in enumerate(made):
-            event.set()
-            yield number
-
-    items = ahead(source(), 1)
+    items = in_order(lambda number: made[number].set(), range(3), 1)
     next(items)
     assert made[1].wait(SECONDS)
     assert not made[2].is_set()
@@ -87,19 +79,24 @@ def test_an_error_comes_in_its_place(error: BaseException, count: int) -> None:
             raise error
         return number
 
-    for results in (ahead(Source(3, error), count), in_order(fails_at_three, range(9), count)):
-        got: list[int] = []
-        with pytest.raises(type(error)):
-            got.extend(results)
-        assert got == [0, 1, 2]
+    got: list[int] = []
+    with pytest.raises(type(error)):
+        got.extend(in_order(fails_at_three, range(9), count))
+    assert got == [0, 1, 2]
 
 
-@pytest.mark.parametrize("over", [lambda items: ahead(items, 4), lambda items: doubled(items, 4)])
-def test_a_caller_that_stops_early_leaves_no_thread(over: Callable[[Iterable[int]], Iterator[int]]) -> None:
+def test_what_was_taken_is_done_where_the_items_end_by_an_error() -> None:
+    done: list[int] = []
+    with pytest.raises(FileError):
+        list(in_order(done.append, Source(3, FileError("frame 3 is damaged")), 2))
+    assert sorted(done) == [0, 1, 2]
+
+
+def test_a_caller_that_stops_early_leaves_no_thread() -> None:
     before, source = threading.active_count(), Source(1000)
 
     def stopped() -> None:
-        for _ in over(source):
+        for _ in doubled(source, 4):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
@@ -115,16 +112,10 @@ def test_calls_of_a_function_overlap() -> None:
 
 
 def test_warnings_of_a_thread_reach_the_user(capsys: pytest.CaptureFixture[str]) -> None:
-    def source() -> Iterator[int]:
-        warnings.warn("frame 1 is odd", stacklevel=1)
-        yield 1
-
     with plain_warnings("svgf-cl"):
         warnings.simplefilter("always")
-        list(in_order(lambda _: warnings.warn("picture 1 is odd", stacklevel=1), ahead(source(), 2), 1))
-    said = capsys.readouterr().err
-    assert "svgf-cl: warning: frame 1 is odd\n" in said
-    assert "svgf-cl: warning: picture 1 is odd\n" in said
+        list(in_order(lambda number: warnings.warn(f"frame {number} is odd", stacklevel=1), [1], 1))
+    assert "svgf-cl: warning: frame 1 is odd\n" in capsys.readouterr().err
 
 
 WRITE_FOR_EVER = """
@@ -132,13 +123,13 @@ import itertools, signal, sys
 from pathlib import Path
 import numpy as np
 from svgf_cl.io.exr import write_channels
-from svgf_cl.io.overlap import ahead, in_order
+from svgf_cl.io.overlap import in_order
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background processes ignore it
 planes = {"R": np.random.default_rng(0).random((400, 600), np.float32)}
 def write(number):
     write_channels(Path(sys.argv[1], f"frame.{number:04d}.exr"), planes)
     return number
-for number in in_order(write, ahead(itertools.count(), 3), 2):
+for number in in_order(write, itertools.count(), 2):
     print(number, flush=True)
 """
 
