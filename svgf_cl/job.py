@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -19,11 +19,11 @@ from svgf_cl.io.patterns import has_number, numbered
 from svgf_cl.io.pictures import channels, denoised_file, holds
 from svgf_cl.io.reading import ReadAs
 from svgf_cl.io.separate import SeparateFiles
-from svgf_cl.io.sequence import number_of
+from svgf_cl.io.sequence import after_gaps, number_of
 from svgf_cl.io.shot import Shot, ShotFrame
 from svgf_cl.io.window import placed
 from svgf_cl.lights import Denoised
-from svgf_cl.look_ahead import both_ways
+from svgf_cl.look_ahead import blocks, both_ways
 from svgf_cl.shot_denoiser import Method, ShotDenoiser
 from svgf_cl.shot_walk import Look, ShotWalk
 
@@ -149,7 +149,18 @@ class Done:
     times: Mapping[str, float]
 
 
-def run(job: Job, chunk: Chunk, look: Look | None = None) -> Iterator[Done]:
+def steps(job: Job, chunk: Chunk) -> int:
+    """How many frames `run` filters for a chunk, in both directions."""
+    if job.look_ahead is None:
+        return chunk.written.stop - chunk.first
+    gaps = after_gaps(job.paths)
+    cuts = [n for n, path in enumerate(job.paths[chunk.first : chunk.end]) if n and path in gaps]
+    count = chunk.written.stop - chunk.first  # a block that begins behind these is not begun
+    found = [each for each in blocks(chunk.end - chunk.first, cuts, job.look_ahead or None) if each[0] < count]
+    return count + sum(end - start for start, _, end in found)
+
+
+def run(job: Job, chunk: Chunk, look: Look | None = None, advance: Callable[[], None] = lambda: None) -> Iterator[Done]:
     """Denoise a chunk of a shot and write its files; frames are read and written while others are filtered.
 
     Parameters
@@ -158,6 +169,8 @@ def run(job: Job, chunk: Chunk, look: Look | None = None) -> Iterator[Done]:
     chunk : Chunk
     look : callable, optional
         Is given every frame before it is filtered, with the shot and its index.
+    advance : callable
+        Called after each of `steps`.
 
     Yields
     ------
@@ -172,17 +185,21 @@ def run(job: Job, chunk: Chunk, look: Look | None = None) -> Iterator[Done]:
         As of `Denoiser.denoise`.
     """
     shot = Shot(job.paths, job.how, job.separate)
-    frames = made(shot, job, chunk, look)
+    frames = made(shot, job, chunk, look, advance)
     wanted = ((job.targets[index], frame) for index, frame in frames if index in chunk.written)
     yield from in_order(lambda each: finished(shot, job.style, *each), wanted, AT_ONCE)
 
 
-def made(shot: Shot, job: Job, chunk: Chunk, look: Look | None) -> Iterator[tuple[int, Made]]:
+def made(
+    shot: Shot, job: Job, chunk: Chunk, look: Look | None, advance: Callable[[], None]
+) -> Iterator[tuple[int, Made]]:
     """Index of each frame of a chunk, in order up to the last one that is written, and what is made of it."""
     if job.look_ahead is None:
-        yield from made_forward(shot, job.method, range(chunk.first, chunk.written.stop), look)
+        for each in made_forward(shot, job.method, range(chunk.first, chunk.written.stop), look):
+            advance()
+            yield each
         return
-    walk = ShotWalk(shot, job.method, range(chunk.first, chunk.end), look)
+    walk = ShotWalk(shot, job.method, range(chunk.first, chunk.end), look, advance)
     for (index, source), parts in both_ways(walk, walk.cuts, job.look_ahead or None):
         yield index, Made(source, walk.composed(parts), walk.forward.profile())
         if index == chunk.written[-1]:  # the next block is not begun

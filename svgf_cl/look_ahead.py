@@ -146,12 +146,19 @@ def both_ways(walk: Walk[Item], cuts: Sequence[int], ahead: int | None) -> Itera
         Each frame in order, with the means of its parts. A part that one of the filters does not have is the forward
         one's, or is left out. Meanwhile the last frame of the forward filter is that same frame.
     """
-    length = ahead or max(1, len(walk))
-    for first, end in zip([0, *cuts], [*cuts, len(walk)], strict=True):
-        walk.begin(backward=False)
+    for start, stop, end in blocks(len(walk), cuts, ahead):
+        if start in (0, *cuts):
+            walk.begin(backward=False)
+        yield from block(walk, start, stop, end)
+
+
+def blocks(count: int, cuts: Sequence[int], ahead: int | None) -> Iterator[tuple[int, int, int]]:
+    """The blocks of so many frames: the first frame, and those behind the last and behind the backward run's first."""
+    length = ahead or max(1, count)
+    for first, end in zip([0, *cuts], [*cuts, count], strict=True):
         for start in range(first, end, length):
             stop = min(start + length, end)
-            yield from block(walk, start, stop, min(stop + length, end))
+            yield start, stop, min(stop + length, end)
 
 
 def block(walk: Walk[Item], start: int, stop: int, end: int) -> Iterator[tuple[Item, dict[Key, Plane]]]:

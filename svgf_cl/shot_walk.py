@@ -26,10 +26,19 @@ class ShotWalk:
         The frames of the shot to go along.
     look : callable, optional
         Is given every frame before the forward filter takes it, with the shot and its index.
+    advance : callable
+        Called after every frame, in both directions.
     """
 
-    def __init__(self, shot: Shot, method: Method, places: range, look: Look | None = None) -> None:
-        self._shot, self._places, self._look = shot, places, look
+    def __init__(
+        self,
+        shot: Shot,
+        method: Method,
+        places: range,
+        look: Look | None = None,
+        advance: Callable[[], None] = lambda: None,
+    ) -> None:
+        self._shot, self._places, self._look, self._advance = shot, places, look, advance
         first, second = shot.beginning()  # the same for all chunks, so that they are alike
         lights = len(second.lights)
         self.forward, self._backward = (ShotDenoiser(shot.shape, method, lights, share=0.5) for _ in range(2))
@@ -69,6 +78,7 @@ class ShotWalk:
         if not backward:
             self._parts = parts
         made = denoiser.filtered(parts)
+        self._advance()
         return {key: Estimate(picture, denoiser.uncertainty(key)) for key, picture in made.items()}
 
     def composed(self, means: Mapping[Channels, Picture]) -> Denoised:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Annotated
 
@@ -12,7 +12,7 @@ import typer
 
 from svgf_cl.chunks import CHUNK, WARM_UP, cut, denoise_on_cluster
 from svgf_cl.cli import reading
-from svgf_cl.cli.console import kept_of, show_times, tracked
+from svgf_cl.cli.console import kept_of, progress_bar, show_times
 from svgf_cl.cli.options import AllowGaps, Exposure, FilterName, Frames, SettingTexts, parse_settings
 from svgf_cl.cli.remarks import Remarks, look_at_surfaces
 from svgf_cl.errors import SvgfError, shown
@@ -22,7 +22,7 @@ from svgf_cl.io.patterns import has_number, parse_range
 from svgf_cl.io.separate import SeparateFiles
 from svgf_cl.io.sequence import check_leftovers, find_frames, number_of
 from svgf_cl.io.shot import Shot
-from svgf_cl.job import Chunk, Done, Job, Style, png_of, run, target_paths
+from svgf_cl.job import Chunk, Done, Job, Style, png_of, run, steps, target_paths
 from svgf_cl.prefilter import EFFORTS, Effort
 from svgf_cl.shot_denoiser import Method
 
@@ -160,9 +160,11 @@ def denoise(
     chunks = cut(job, selected, chunk or (CHUNK if scheduler else len(selected)), warm_up)
     total, kept = len(selected), 0
     times: deque[Mapping[str, float]] = deque(maxlen=TIMED)
-    for done in tracked(frames_done(job, chunks, scheduler, check), total, "denoising"):
-        kept += done.kept
-        times.append(done.times)
+    count = total if scheduler else sum(steps(job, each) for each in chunks)
+    with progress_bar("denoising", count) as advance:
+        for done in frames_done(job, chunks, scheduler, advance, check=check):
+            kept += done.kept
+            times.append(done.times)
     show_times(times)
     print(f"{total} {'frame' if total == 1 else 'frames'} in {folder}{kept_of(kept)}")
 
@@ -184,20 +186,27 @@ def parse_look_ahead(text: str | None) -> int | None:
     return int(text)
 
 
-def frames_done(job: Job, chunks: list[Chunk], scheduler: str | None, check: bool) -> Iterator[Done]:
-    """Denoise chunks here or on a cluster, with remarks on the first frames."""
+def frames_done(
+    job: Job, chunks: list[Chunk], scheduler: str | None, advance: Callable[[], None], *, check: bool
+) -> Iterator[Done]:
+    """Denoise chunks here or on a cluster, with remarks on the first frames.
+
+    `advance` is called after each frame that is filtered here, or that the cluster has written.
+    """
     places = range(chunks[0].first, chunks[-1].written.stop)
     remarks = Remarks(len(places), check=check)
     if len(chunks) == 1 and not scheduler and job.look_ahead is None:
-        yield from run(job, chunks[0], remarks.look)
+        yield from run(job, chunks[0], remarks.look, advance)
         return
     # Other frames may be filtered before the first ones.
     remarks.look_at_first(Shot(job.paths, job.how, job.separate), places)
     if scheduler:
-        yield from denoise_on_cluster(scheduler, job, chunks, look_at_surfaces)
-    else:
-        for chunk in chunks:
-            yield from run(job, chunk, look_at_surfaces)
+        for done in denoise_on_cluster(scheduler, job, chunks, look_at_surfaces):
+            advance()
+            yield done
+        return
+    for chunk in chunks:
+        yield from run(job, chunk, look_at_surfaces, advance)
 
 
 def chosen(sources: list[Path], span: str | None) -> range:

@@ -16,7 +16,7 @@ from svgf_cl.io.frames import frame_path, write_frame
 from svgf_cl.io.sequence import find_frames
 from svgf_cl.io.shot import Shot, ShotFrame
 from svgf_cl.io.synthetic import room_frames
-from svgf_cl.job import AT_ONCE, Chunk, Done, Job, Style, in_layer, run, target_paths
+from svgf_cl.job import AT_ONCE, Chunk, Done, Job, Style, in_layer, run, steps, target_paths
 from svgf_cl.shot_denoiser import Method
 from svgf_cl.shot_walk import ShotWalk
 from tests.renderers import BLENDER_HEADER, NUMBERS, blender, moments, written
@@ -37,6 +37,19 @@ def run_all(job: Job) -> Iterator[Done]:
     """Denoise a whole shot."""
     count = len(job.paths)
     return run(job, Chunk(0, range(count), count))
+
+
+@pytest.mark.parametrize("look_ahead", [None, 0, 1, 2])
+@pytest.mark.parametrize("gap", [False, True])
+@pytest.mark.parametrize("chunk", [Chunk(0, range(6), 6), Chunk(1, range(3, 5), 6), Chunk(2, range(2, 3), 3)])
+def test_it_is_known_how_many_steps_there_are(chunk: Chunk, gap: bool, look_ahead: int | None, tmp_path: Path) -> None:
+    for number, frame in enumerate(room_frames((8, 8), 6)):
+        write_frame(frame_path(tmp_path, number + 10 * (gap and number > 3)), frame)
+    job = job_of(find_frames([tmp_path], allow_gaps=gap), tmp_path / "out", look_ahead=look_ahead)
+    taken: list[None] = []
+    done = list(run(job, chunk, advance=lambda: taken.append(None)))
+    assert len(done) == len(chunk.written)
+    assert len(taken) == steps(job, chunk)
 
 
 def test_each_frame_is_written_when_it_is_done(sources: list[Path], tmp_path: Path) -> None:
