@@ -5,10 +5,10 @@ BIN := .venv/bin
 READY := .venv/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all lint bench docs clean device implementations
+.PHONY: help demo test test-all lint gpu-static bench gpu docs clean device implementations gpu-compilers
 
 help:  ## list the targets
-	@sed -n 's/^\([a-z-]*\):.*## /\1	/p' $(MAKEFILE_LIST) | expand -t 10
+	@sed -n 's/^\([a-z-]*\):.*## /\1	/p' $(MAKEFILE_LIST) | expand -t 12
 
 demo: device  ## render a built-in scene with noise and denoise it
 	$(BIN)/svgf-cl demo
@@ -24,18 +24,26 @@ lint: $(READY)  ## check style, types, who imports whom, and kernels (needs clan
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/python scripts/lint_kernels.py
+	$(BIN)/python -m scripts.lint_kernels
+
+gpu-static: gpu-compilers  ## compile every kernel for GPUs, without one; fail on spills, scratch memory, too many registers
+	$(BIN)/python -m benchmarks.gpu_static -o out/gpu_static
 
 # Intel's runtime as a second device, and a rival: 350 MB in all, and the report does without what cannot be had.
 bench: device  ## time every kernel on every device, beside rival and error; report in out/bench (ten minutes)
 	-$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[dev,cpu,oidn]'
 	$(BIN)/python -m benchmarks --output out/bench
 
-docs: demo implementations  ## make docs/accuracy.md, docs/scene_description.md, the tables of docs/algorithm.md and all pictures again
+# Installs nothing but the environment: where that is ready, no network is needed.
+gpu: $(READY)  ## test, tune and time a GPU in under ten minutes; report in out/gpu, see docs/gpu.md
+	$(BIN)/python -m benchmarks.gpu -o out/gpu
+
+docs: demo implementations  ## make docs/accuracy.md, docs/scene_description.md, the tables of docs/algorithm.md and docs/gpu.md and all pictures again
 	$(BIN)/python -m benchmarks.accuracy_page docs/accuracy.md
 	$(BIN)/python scripts/picture.py
 	$(BIN)/python scripts/scene_description.py
 	$(BIN)/python scripts/pass_table.py
+	$(BIN)/python -m benchmarks.gpu.roofline docs/gpu.md
 	$(BIN)/svgf-cl scenes -o docs/builtin_scenes.webp --size 320x180 --spp 128
 
 clean:  ## remove what the other targets made
@@ -46,6 +54,9 @@ device: $(READY)
 
 implementations: $(READY)
 	@scripts/set_up implementations
+
+gpu-compilers: $(READY)
+	@scripts/set_up gpu-compilers
 
 $(READY): pyproject.toml setup.py scripts/set_up
 	@PYTHON=$(PYTHON) scripts/set_up environment

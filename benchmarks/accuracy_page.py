@@ -1,6 +1,7 @@
 """Every kernel against the float64 oracle, on every OpenCL implementation: printed, and written to a file if given.
 
 python -m benchmarks.accuracy_page [FILE]
+python -m benchmarks.accuracy_page --here [--brief]   # the figures of the default device, as JSON; or a few of them
 """
 
 from __future__ import annotations
@@ -20,9 +21,12 @@ import numpy as np
 
 from benchmarks import steady_light
 from benchmarks.implementations import Environment, environments
+from benchmarks.presentation import markdown
 from svgf_cl import Frame, Kalman, Lbf, Sbf, Settings
 from svgf_cl.bench import error_to_oracle
+from svgf_cl.bench.tables import Table
 from svgf_cl.device import devices
+from svgf_cl.filters.filter import Filter
 from svgf_cl.io.atomic import written_whole
 from svgf_cl.oracle.accuracy import DECISION, Deviation, deviations, worst
 from svgf_cl.oracle.rounding import SCALE_SHARE
@@ -37,7 +41,7 @@ SMALL, FEW = (18, 32), 2
 WHOLE = (Kalman(), Settings())
 PIPELINE_FRAMES = 3
 COLUMNS = ("absolute", "relative", "ulps", "decided_otherwise")
-HERE = "--here"
+HERE, BRIEF = "--here", "--brief"
 
 INTRODUCTION = f"""# Accuracy
 
@@ -88,21 +92,31 @@ def random_frames(shape: tuple[int, int], count: int, seed: int = 1) -> Iterator
         )
 
 
-def measured() -> dict[str, Any]:
-    """The figures of this process's default device."""
+def measured(*, brief: bool = False) -> dict[str, Any]:
+    """The figures of this process's default device; brief ones are of the default filter on small frames alone."""
     queue = devices.default_queue()
-    traced = render_sequence(Shot(builtin_scene("cornell"), SHAPE, FRAMES))
     kernels: dict[str, list[Deviation]] = {}
-    sequences = list(traced), list(random_frames(SHAPE, FRAMES))
-    small = (list(random_frames(SMALL, FEW)),)
-    for frames, settings in (*itertools.product(sequences, ALL_KERNELS), *itertools.product(small, WINDOWS)):
+    whole = WHOLE[:1] if brief else WHOLE
+    for frames, settings in small_cases() if brief else all_cases():
         for deviation in deviations(frames, settings, queue).values():
             kernels.setdefault(deviation.kernel, []).append(deviation)
     return {
         "device": f"{queue.device.name}, {queue.device.platform.version.strip()}, driver {queue.device.driver_version}",
         "kernels": {name: asdict(worst(stages)) for name, stages in kernels.items()},
-        "whole": {each.name: error_to_oracle(each, frames=PIPELINE_FRAMES, queue=queue) for each in WHOLE},
+        "whole": {each.name: error_to_oracle(each, frames=PIPELINE_FRAMES, queue=queue) for each in whole},
     }
+
+
+def all_cases() -> Iterator[tuple[list[Frame], Filter]]:
+    """The sequences and filters that every kernel is measured by."""
+    traced = render_sequence(Shot(builtin_scene("cornell"), SHAPE, FRAMES))
+    yield from itertools.product((list(traced), list(random_frames(SHAPE, FRAMES))), ALL_KERNELS)
+    yield from itertools.product((list(random_frames(SMALL, FEW)),), WINDOWS)
+
+
+def small_cases() -> Iterator[tuple[list[Frame], Filter]]:
+    """The default filter on a small sequence."""
+    yield list(random_frames(SMALL, FEW)), WHOLE[0]
 
 
 def measured_apart(environment: Environment) -> dict[str, Any]:
@@ -113,31 +127,37 @@ def measured_apart(environment: Environment) -> dict[str, Any]:
     return figures
 
 
-def table(*rows: tuple[str, ...]) -> str:
-    """A markdown table; the first row is its head."""
-    head, *body = (f"| {' | '.join(row)} |" for row in rows)
-    return "\n".join([head, "|---" * len(rows[0]) + "|", *body])
-
-
-def page(found: dict[str, dict[str, Any]]) -> str:
-    """The page on these implementations, by name."""
+def kernel_table(found: dict[str, dict[str, Any]]) -> Table:
+    """Each kernel's largest errors on these implementations, by name."""
     kernels = next(iter(found.values()))["kernels"]
-    errors = [
+    rows = [
         (kernel, name, *(f"{figures['kernels'][kernel][column]:.1e}" for column in COLUMNS))
         for kernel in kernels
         for name, figures in found.items()
     ]
-    whole = [
+    heads = ("kernel", "implementation", *(column.replace("_", " ") for column in COLUMNS))
+    return Table("largest error of each kernel against the float64 oracle", heads, rows)
+
+
+def whole_table(found: dict[str, dict[str, Any]]) -> Table:
+    """The whole filters' errors on these implementations, by name."""
+    rows = [
         (filter_, name, f"{rms:.1e}", f"{largest:.1e}", figures["device"])
         for name, figures in found.items()
         for filter_, (largest, rms) in figures["whole"].items()
     ]
+    heads = ("filter", "implementation", "rms", "largest", "device")
+    return Table("error of the whole filter, relative to the picture's mean", heads, rows)
+
+
+def page(found: dict[str, dict[str, Any]]) -> str:
+    """The page on these implementations, by name."""
     return "\n".join(
         [
             INTRODUCTION,
-            table(("kernel", "implementation", *(column.replace("_", " ") for column in COLUMNS)), *errors),
+            markdown(kernel_table(found)),
             WHOLE_FILTER,
-            table(("filter", "implementation", "rms", "largest", "device"), *whole),
+            markdown(whole_table(found)),
             "",
             steady_light.INTRODUCTION,
             steady_light.table(),
@@ -148,8 +168,8 @@ def page(found: dict[str, dict[str, Any]]) -> str:
 
 def main() -> None:
     """Measure, here or on every implementation."""
-    if sys.argv[1:] == [HERE]:
-        print(json.dumps(measured()))
+    if sys.argv[1:2] == [HERE]:
+        print(json.dumps(measured(brief=BRIEF in sys.argv)))
         return
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor() as pool:
         processes = environments(Path(folder))

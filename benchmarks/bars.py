@@ -13,7 +13,7 @@ from svgf_cl.bench.results import Result
 from svgf_cl.bench.rig import EVENT, HOST
 from svgf_cl.bench.tables import Table
 from svgf_cl.device.devices import POCL
-from svgf_cl.device.intel_runtime import PLATFORM as INTEL
+from svgf_cl.device.drivers import INTEL
 
 Results = Sequence[Result]
 
@@ -176,8 +176,8 @@ def bar_table(results: Results, platforms: Mapping[str, str]) -> Table:
     found = [(name, [r for r in results if r.device == selector]) for selector, name in platforms.items()]
     held = [(bar, *each) for bar in BARS for each in found]
     by_name = dict(found)
-    if INTEL in by_name and POCL in by_name:
-        held.append((against_pocl(by_name[POCL]), INTEL, by_name[INTEL]))
+    if INTEL.platform in by_name and POCL in by_name:
+        held.append((against_pocl(by_name[POCL]), INTEL.platform, by_name[INTEL.platform]))
     rows = [row for each in held for row in judged(*each)]
     return Table(
         "what has to hold; at 1280x720 where no size is told", ("bar", "implementation", "wanted", "measured", ""), rows

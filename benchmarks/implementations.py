@@ -11,13 +11,14 @@ import sys
 import tempfile
 from pathlib import Path
 
-from svgf_cl.device import devices, icd_files, intel_runtime
+from svgf_cl.device import devices, icd_files
+from svgf_cl.device.drivers import INTEL
 
 # By the name in tables: the platform's own name, what the OpenCL loader is to load, what else the driver asks for.
 # Oclgrind's package registers it nowhere; `scripts/set_up implementations` installs them all.
 CPU_IMPLEMENTATIONS = {
     "PoCL": (devices.POCL, "libpocl.so.2", {}),
-    "Intel": (intel_runtime.PLATFORM, str(intel_runtime.find()), {}),
+    "Intel": (INTEL.platform, str(INTEL.find()), {}),
     "rusticl": ("rusticl", "libRusticlOpenCL.so.1", {"RUSTICL_ENABLE": "llvmpipe"}),
     "Oclgrind": (devices.SIMULATOR, "/usr/lib/oclgrind/liboclgrind-rt-icd.so", {}),
 }

@@ -23,10 +23,6 @@ INLINE void add_tap(Sum *sum, floatv w, const floatv *color) {
     sum->weight += w;
 }
 
-INLINE void load_colors(const int4 size, int s, int tap, __global const light_t *source, floatv *color) {
-    UNROLLED_FOR(k, 3) color[k] = load_light(PLANE(size, source, ILLUMINATION_COLOR, s, k) + tap);
-}
-
 // 2^e, and exactly nothing where it has levelled off or the tap shows something else.
 INLINE floatv tap_weight(Distance d, floatv e) {
     const floatv w = weight(e);
@@ -55,10 +51,10 @@ KERNEL bilateral(const int4 size, const float albedo_threshold, const float dept
             p[s][k] = OCTAVE * load(PLANE(size, parameters, PARAMETERS_EXPONENTS, s, k) + here);
         }
     }
-    for (int dy = -WINDOW; dy <= WINDOW; ++dy) {
-        for (int dx = -WINDOW; dx <= WINDOW; ++dx) {
+    ROLLED_FOR(dy, -WINDOW, WINDOW) {
+        ROLLED_FOR(dx, -WINDOW, WINDOW) {
             if (dx == 0 && dy == 0) continue;
-            const int tap = here + dy * size.z + dx;
+            const int tap = moved(here, dy * size.z + dx);
             const Distance d = distance_to(features, size, tap, guide);
             const float squared_distance = (float)(dx * dx + dy * dy);
             UNROLLED_FOR(s, SIGNALS) {
@@ -113,11 +109,11 @@ KERNEL bilateral(const int4 size, const float gamma_depth, const float gamma_nor
         }
         own[s] = sums[0][s].color[LIGHT_LUMINANCE];
     }
-    for (int dy = -WINDOW; dy <= WINDOW; ++dy) {
+    ROLLED_FOR(dy, -WINDOW, WINDOW) {
         const int rows = max(dy, -dy);
-        for (int dx = -WINDOW; dx <= WINDOW; ++dx) {
+        ROLLED_FOR(dx, -WINDOW, WINDOW) {
             if (dx == 0 && dy == 0) continue;
-            const int columns = max(dx, -dx), tap = here + dy * size.z + dx;
+            const int columns = max(dx, -dx), tap = moved(here, dy * size.z + dx);
             const Distance d = distance_to(features, size, tap, guide);
             const floatv w = tap_weight(d, ONE - by_depth * d.depth - by_normal * d.normal);
             UNROLLED_FOR(s, SIGNALS) {

@@ -115,7 +115,8 @@ KERNEL innovation_mean(const int4 size, const int4 coarse_size, const float sigm
     Pairs residual[SIGNALS][2];
     UNROLLED_FOR(s, SIGNALS) {
         UNROLLED_FOR(dy, 2) {
-            residual[s][dy] = load_pairs(PLANE(size, innovation, INNOVATION_RESIDUAL, s, 0) + centre + dy * size.z);
+            residual[s][dy] =
+                load_pairs(PLANE(size, innovation, INNOVATION_RESIDUAL, s, 0) + moved(centre, dy * size.z));
         }
     }
     const intv known = (z.side[0] > 0.0f) & is_known(residual[0][0].side[0]);
@@ -128,7 +129,7 @@ KERNEL innovation_mean(const int4 size, const int4 coarse_size, const float sigm
     const Facet facet = facet_of(z.side[0], normal, g, 1.0f, sigma_depth, sigma_normal, depth_slope_floor);
     Means sum = no_means();
     UNROLLED_FOR(dy, 2) {
-        const int tap = centre + dy * size.z;
+        const int tap = moved(centre, dy * size.z);
         Pairs there[3];
         UNROLLED_FOR(k, 3) there[k] = load_normal_pairs(normal_plane(size, guide, k) + tap);
         floatv w[2];
@@ -162,7 +163,8 @@ KERNEL innovation_mean(const int4 size, const int4 coarse_size, const float sigm
 }
 
 INLINE void load_facet_normals(const int4 size, int i, __global const float *facets, floatv *normal) {
-    UNROLLED_FOR(k, 3) normal[k] = load(PLANE(size, facets, FACETS_NORMAL, 0, k) + i);
+    THREE_PLANES(float, planes, size, PLANE(size, facets, FACETS_NORMAL, 0, 0));
+    UNROLLED_FOR(k, 3) normal[k] = load(planes[k] + i);
 }
 
 INLINE void add_means(Means *sum, floatv w, const int4 size, int tap, __global const float *finer) {
@@ -170,7 +172,8 @@ INLINE void add_means(Means *sum, floatv w, const int4 size, int tap, __global c
     sum->share += w * w * load(SHARED_PLANE(size, finer, CHANGE_SHARE) + tap);
     UNROLLED_FOR(s, SIGNALS) {
         Mean *m = &sum->of[s];
-        UNROLLED_FOR(k, 3) m->color[k] += w * load(PLANE(size, finer, CHANGE_COLOR, s, k) + tap);
+        THREE_PLANES(float, planes, size, PLANE(size, finer, CHANGE_COLOR, s, 0));
+        UNROLLED_FOR(k, 3) m->color[k] += w * load(planes[k] + tap);
         m->square += w * load(PLANE(size, finer, CHANGE_SQUARE, s, 0) + tap);
         m->residual += w * load(PLANE(size, finer, CHANGE_RESIDUAL, s, 0) + tap);
         m->residual_square += w * load(PLANE(size, finer, CHANGE_RESIDUAL_SQUARE, s, 0) + tap);
@@ -198,7 +201,7 @@ INLINE Means mean_over(const int4 size, int here, int step, float sigma_depth, f
             const float log2_h = dx && dy ? -2.0f : -1.0f;  // of the spline (1/2, 1, 1/2) in both directions
             const int offset = step * (dy * size.z + dx);
             UNROLLED_FOR(side, 2) {
-                const int tap = side ? here - offset : here + offset;
+                const int tap = moved(here, side ? -offset : offset);
                 floatv there[3];
                 load_facet_normals(size, tap, facets, there);
                 const floatv w = tap_share(facet, scale, log2_h, load(depth + tap), there);

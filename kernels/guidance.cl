@@ -22,9 +22,9 @@ INLINE Moments neighbourhood(const int4 size, int here, Surface surface, const f
     Moments sum;
     sum.weight = (floatv)(0.0f);
     UNROLLED_FOR(s, SIGNALS) sum.first[s] = sum.second[s] = (floatv)(0.0f);
-    for (int dy = -REACH; dy <= REACH; ++dy) {
-        for (int dx = -REACH; dx <= REACH; ++dx) {
-            const int tap = here + dy * size.z + dx;
+    ROLLED_FOR(dy, -REACH, REACH) {
+        ROLLED_FOR(dx, -REACH, REACH) {
+            const int tap = moved(here, dy * size.z + dx);
             floatv w = weight(surface_exponent(surface, depth_scale(surface.facet, dx, dy), 0.0f, size, tap, guide));
             // Even so faint, the square of light of 1e10 would show; and a miss is told by its depth alone.
             const intv seen = load(SHARED_PLANE(size, guide, GUIDE_DEPTH) + tap) > 0.0f;
@@ -64,7 +64,7 @@ KERNEL guidance(const int4 size, const float sigma_depth, const float sigma_norm
             const floatv scale = depth_scale(surface.facet, dx, dy);
             const float log2_h = dx && dy ? -2.0f : -1.0f;
             UNROLLED_FOR(side, 2) {
-                const int offset = dy * size.z + dx, tap = side ? here - offset : here + offset;
+                const int offset = dy * size.z + dx, tap = moved(here, side ? -offset : offset);
                 const floatv z = load(depth + tap);
                 floatv normal[3];
                 load_normals(size, tap, guide, normal);

@@ -118,9 +118,9 @@ INLINE void see_feature(Layer *layer, int feature, Planes planes, int here, floa
     Sums near = no_sums(), wide = no_sums();
     floatv own[3];
     UNROLLED_FOR(k, channels) own[k] = feature_at(planes, feature, k, here);
-    for (int dy = -WIDE; dy <= WIDE; ++dy) {
-        for (int dx = -WIDE; dx <= WIDE; ++dx) {
-            const int tap = here + dy * planes.size.z + dx;
+    ROLLED_FOR(dy, -WIDE, WIDE) {
+        ROLLED_FOR(dx, -WIDE, WIDE) {
+            const int tap = moved(here, dy * planes.size.z + dx);
             const floatv seen = where(depth_at(planes, tap) > 0.0f, (floatv)(1.0f), (floatv)(0.0f));
             floatv difference[3];
             UNROLLED_FOR(k, channels) difference[k] = seen * apart(feature_at(planes, feature, k, tap), own[k], scale);
@@ -130,17 +130,18 @@ INLINE void see_feature(Layer *layer, int feature, Planes planes, int here, floa
     }
     see_sums(layer, input, near, feature);
     see_sums(layer, input + 3, wide, feature);
-    const floatv gradient = squared_slope(planes, feature, here - 1, here + 1, scale) +
-                            squared_slope(planes, feature, here - planes.size.z, here + planes.size.z, scale);
+    const floatv gradient =
+        squared_slope(planes, feature, here - 1, here + 1, scale) +
+        squared_slope(planes, feature, moved(here, -planes.size.z), moved(here, planes.size.z), scale);
     see(layer, input + STATISTICS - 1, squashed(sqrt(gradient), HALFWAY_OF(feature)));
 }
 
 // Mean luminance of the wide neighbourhood.
 INLINE floatv mean_light(Planes planes, int here) {
     floatv sum = (floatv)(0.0f), taps = (floatv)(TINY);
-    for (int dy = -WIDE; dy <= WIDE; ++dy) {
-        for (int dx = -WIDE; dx <= WIDE; ++dx) {
-            const int tap = here + dy * planes.size.z + dx;
+    ROLLED_FOR(dy, -WIDE, WIDE) {
+        ROLLED_FOR(dx, -WIDE, WIDE) {
+            const int tap = moved(here, dy * planes.size.z + dx);
             const floatv seen = where(depth_at(planes, tap) > 0.0f, (floatv)(1.0f), (floatv)(0.0f));
             sum += seen * load_light(planes.luminance + tap);
             taps += seen;

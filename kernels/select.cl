@@ -25,10 +25,10 @@ KERNEL select_scale(const int4 size, const float sigma_depth, const float sigma_
     UNROLLED_FOR(i, SCALES) {
         UNROLLED_FOR(s, SIGNALS) risk[i][s] = load(PLANE(size, candidates[i], CANDIDATE_RISK, s, 0) + here);
     }
-    for (int dy = -REACH; dy <= REACH; ++dy) {
-        for (int dx = -REACH; dx <= REACH; ++dx) {
+    ROLLED_FOR(dy, -REACH, REACH) {
+        ROLLED_FOR(dx, -REACH, REACH) {
             if (dx == 0 && dy == 0) continue;
-            const int tap = here + dy * size.z + dx;
+            const int tap = moved(here, dy * size.z + dx);
             floatv w = weight(surface_exponent(surface, depth_scale(surface.facet, dx, dy), 0.0f, size, tap, guide));
             w = where(w > FAINTEST, w, (floatv)(0.0f));
             UNROLLED_FOR(i, SCALES) {

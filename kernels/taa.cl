@@ -33,7 +33,7 @@ INLINE floatv newest_share(const int4 size, int here, __global const light_t *mo
     floatv least = (floatv)(INFINITY);
     UNROLLED_FOR(j, 3) {
         UNROLLED_FOR(i, 3) {
-            const int tap = here + (j - 1) * size.z + i - 1;
+            const int tap = moved(here, (j - 1) * size.z + i - 1);
 #ifdef MOMENTS_LENGTH
             const floatv share =
                 1.0f / load_light(SHARED_PLANE(size, moments, MOMENTS_LENGTH) + tap);  // of 0: infinite

@@ -118,9 +118,9 @@ INLINE Corrections direct(const int4 size, int here, Facet facet, float threshol
     Corrections sum = no_corrections();
     floatv squares = (floatv)(0.0f), residual_square[SIGNALS];
     UNROLLED_FOR(s, SIGNALS) residual_square[s] = (floatv)(0.0f);
-    for (int dy = -DIRECT_REACH; dy <= DIRECT_REACH; ++dy) {
-        for (int dx = -DIRECT_REACH; dx <= DIRECT_REACH; ++dx) {
-            const int tap = here + dy * size.z + dx;
+    ROLLED_FOR(dy, -DIRECT_REACH, DIRECT_REACH) {
+        ROLLED_FOR(dx, -DIRECT_REACH, DIRECT_REACH) {
+            const int tap = moved(here, dy * size.z + dx);
             floatv normal[3];
             load_normals(size, tap, guide, normal);
             const floatv z = load(SHARED_PLANE(size, guide, GUIDE_DEPTH) + tap);
@@ -131,8 +131,9 @@ INLINE Corrections direct(const int4 size, int here, Facet facet, float threshol
             squares += w * w;
             UNROLLED_FOR(s, SIGNALS) {
                 Correction *c = &sum.of[s];
+                THREE_PLANES(float, planes, size, PLANE(size, innovation, INNOVATION_COLOR, s, 0));
                 UNROLLED_FOR(k, 3) {
-                    const floatv off = load(PLANE(size, innovation, INNOVATION_COLOR, s, k) + tap);
+                    const floatv off = load(planes[k] + tap);
                     c->color[k] += w * off;
                     if (k == LIGHT_LUMINANCE) c->spread += w * off * off;
                 }

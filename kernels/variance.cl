@@ -34,9 +34,9 @@ INLINE Moments neighbourhood(const int4 size, int here, Surface surface, const f
     Moments sum;
     sum.weight = (floatv)(0.0f);
     UNROLLED_FOR(s, SIGNALS) sum.first[s] = sum.second[s] = (floatv)(0.0f);
-    for (int dy = -REACH; dy <= REACH; ++dy) {
-        for (int dx = -REACH; dx <= REACH; ++dx) {
-            const int tap = here + dy * size.z + dx;
+    ROLLED_FOR(dy, -REACH, REACH) {
+        ROLLED_FOR(dx, -REACH, REACH) {
+            const int tap = moved(here, dy * size.z + dx);
             floatv w = weight(surface_exponent(surface, depth_scale(surface.facet, dx, dy), 0.0f, size, tap, guide));
             w = where(w > FAINTEST, w, (floatv)(0.0f));  // even so faint, the square of light of 1e10 would show
             if (dx == 0 && dy == 0) w = (floatv)(1.0f);

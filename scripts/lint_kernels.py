@@ -13,16 +13,22 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
+from benchmarks.builds import Build, Case, builds
 from svgf_cl.device import programs
+from svgf_cl.device.tuning import EXPONENTIALS, VECTOR_WIDTHS, Tuning
 from svgf_cl.filters import FILTERS
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.signals import SPLITS, Inputs
 from svgf_cl.settings import domains
 
-WIDTHS = (1, 4, 8, 16)
-# These and the width say how something is done, not what there is: one value against another, and all at once, will do.
+TUNINGS = [
+    Tuning(vector_width=width, work_group=(1, 1), exponential=exponential)
+    for exponential in EXPONENTIALS
+    for width in VECTOR_WIDTHS
+]
+# These and the tuning say how something is done, not what there is: one value against another, and all at once, do.
 SETTINGS: tuple[dict[str, Any], ...] = (
-    {"precision": "precise", "taps": "5x5"},
+    {"precision": "precise", "taps": "5x5", "standard_error": True},
     {"precision": "fast", "taps": "5x5", "half_history": True},
     {"precision": "precise", "taps": "3x3", "half_guides": True},
     {"precision": "fast", "taps": "3x3", "half_guides": True, "half_history": True},
@@ -38,9 +44,6 @@ ROOT = Path(__file__).resolve().parent.parent
 FORMATTED = ("kernels/*.cl", "kernels/*.clh", "svgf_cl/bench/*.cl", "examples/*.cl")
 
 
-Job = tuple[str, tuple[str, ...]]  # a source file and the compiler's options
-
-
 def inputs() -> Iterator[Inputs]:
     """All that frames may supply."""
     either = (False, True)
@@ -48,22 +51,18 @@ def inputs() -> Iterator[Inputs]:
         yield Inputs(signals=signals, motion=motion, albedo=albedo, emission=emission, id=id_)
 
 
-def jobs() -> list[Job]:
-    """Every source that no filter chooses; each of a filter with the macros of all that frames may supply, at one width
-    each by turns.
+def variants() -> list[Build]:
+    """Every source that no filter chooses; each of a filter with the macros of all that frames may supply, at one
+    tuning each by turns.
     """
-    found: dict[Job, None] = {(source, ()): None for source in programs.WITHOUT_HEADERS}
     either = (False, True)
     filters = [
         variant(kind, {"taa": taa, **chosen}) for kind in FILTERS.values() for taa in either for chosen in SETTINGS
     ]
-    for (row, chosen), (column, supplied) in itertools.product(enumerate(filters), enumerate(inputs())):
-        width = WIDTHS[(row + column) % len(WIDTHS)]  # every width meets every setting, and every input
-        pipeline = chosen.pipeline(supplied)
-        for source in dict.fromkeys(entry.source for entry in pipeline.passes):
-            options = programs.options_of(source, {"VW": width, **pipeline.defines})
-            found[source, tuple(option for option in options if option.startswith("-D"))] = None
-    return list(found)
+    return builds(
+        Case(chosen, supplied, TUNINGS[(row + column) % len(TUNINGS)])  # every tuning meets all settings and all inputs
+        for (row, chosen), (column, supplied) in itertools.product(enumerate(filters), enumerate(inputs()))
+    )
 
 
 def variant(kind: type[Filter], wanted: dict[str, Any]) -> Filter:
@@ -71,12 +70,11 @@ def variant(kind: type[Filter], wanted: dict[str, Any]) -> Filter:
     return kind(**{name: value for name, value in wanted.items() if name in domains(kind)})
 
 
-def check(job: Job) -> str:
+def check(build: Build) -> str:
     """Clang's complaints about a source, empty if there are none."""
-    source, defines = job
-    command = ["clang", "-fsyntax-only", *LANGUAGE, *WARNINGS, *defines, "-"]
-    clang = subprocess.run(command, input=programs.source(source), text=True, capture_output=True)
-    return f"kernels/{source}.cl with {' '.join(defines)}:\n{clang.stderr}" if clang.returncode else ""
+    command = ["clang", "-fsyntax-only", *LANGUAGE, *WARNINGS, *build.macros, "-"]
+    clang = subprocess.run(command, input=programs.source(build.source), text=True, capture_output=True)
+    return f"kernels/{build.source}.cl with {' '.join(build.macros)}:\n{clang.stderr}" if clang.returncode else ""
 
 
 def unformatted() -> str:
@@ -94,11 +92,11 @@ def main() -> int:
     if shutil.which("clang") is None:
         print("lint_kernels: clang is missing; install it, e.g. apt-get install clang", file=sys.stderr)
         return 1
-    variants = jobs()
+    checked = variants()
     with ThreadPoolExecutor() as pool:
-        complaints = list(filter(None, pool.map(check, variants)))
+        complaints = list(filter(None, pool.map(check, checked)))
     layout = unformatted()
-    print(*complaints[:3], layout, f"{len(variants)} kernel variants checked, {len(complaints)} with errors", sep="\n")
+    print(*complaints[:3], layout, f"{len(checked)} kernel variants checked, {len(complaints)} with errors", sep="\n")
     return 1 if complaints or layout else 0
 
 

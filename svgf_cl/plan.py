@@ -199,7 +199,7 @@ def launch(
     past : Layout, optional
         Of the buffers that the previous frame left, if it is not that of the others.
     """
-    defines = {"VW": at.tuning.vector_width, **pipeline.defines}
+    defines = at.tuning.defines | pipeline.defines
     kernel = cl.Kernel(programs.build(at.queue.context, at.queue.device, entry.source, defines), entry.kernel)
     layouts = {
         "size": at.layout,

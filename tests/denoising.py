@@ -21,9 +21,10 @@ def feed(*frames: Frame, kind: type[Filter] = Settings, **chosen: Any) -> tuple[
 
 
 @contextmanager
-def vector_width(width: int | None) -> Iterator[None]:
+def vector_width(width: int | None, exponential: str = "polynomial") -> Iterator[None]:
     """Denoisers made inside treat so many pixels as one vector; None leaves it to the device."""
     with pytest.MonkeyPatch.context() as patch:
         if width:
-            patch.setattr(tuning, "default_tuning", lambda device: Tuning(vector_width=width, work_group=(16, 1)))
+            chosen = Tuning(vector_width=width, work_group=(16, 1), exponential=exponential)
+            patch.setattr(tuning, "default_tuning", lambda device: chosen)
         yield

@@ -77,11 +77,12 @@ PIPELINE_TOLERANCE = 3e-4
 
 @dataclass(frozen=True)
 class Case:
-    """A sequence, how to filter it, and the width of the vectors that do it."""
+    """A sequence, how to filter it, the width of the vectors that do it, and of such the exponential."""
 
     frames: Callable[[], Sequence[Frame]]
     settings: Filter = field(default_factory=Settings)
     width: int | None = None
+    exponential: str = "polynomial"
 
 
 # No two settings alike, so that no two can be mixed up.
@@ -107,8 +108,8 @@ CASES = {
     "split, unusual settings": Case(partial(bumpy_sequence, SPLIT), UNUSUAL),
     "albedo alone": Case(partial(bumpy_sequence, ("color", "albedo")), width=1),
     "emission alone": Case(partial(bumpy_sequence, ("color", "emission"), motion=2), Settings(sigma_normal=16), 4),
-    "ids alone": Case(partial(bumpy_sequence, ("color", "id"), motion=2), Settings(sigma_normal=32), 1),
-    "plain split": Case(partial(bumpy_sequence, SPLIT[:2], motion=2), Settings(taa=True, taps="5x5"), 8),
+    "ids alone": Case(partial(bumpy_sequence, ("color", "id"), motion=2), Settings(sigma_normal=32), 1, "exp2"),
+    "plain split": Case(partial(bumpy_sequence, SPLIT[:2], motion=2), Settings(taa=True, taps="5x5"), 8, "exp2"),
 }
 
 # Tolerant enough of differences in light that even the last levels find something to average.
@@ -129,7 +130,7 @@ EAW_CASES = {
     "EAW, full": Case(partial(bumpy_sequence, FULL), Eaw(taps="5x5", sigma_color=20)),
     "EAW, split, unusual settings": Case(partial(bumpy_sequence, SPLIT), UNUSUAL_EAW),
     "EAW, split, antialiased": Case(partial(bumpy_sequence, SPLIT), Eaw(taa=True, taps="5x5")),
-    "EAW, albedo alone": Case(partial(bumpy_sequence, ("color", "albedo"), motion=2), Eaw(sigma_color=5), 1),
+    "EAW, albedo alone": Case(partial(bumpy_sequence, ("color", "albedo"), motion=2), Eaw(sigma_color=5), 1, "exp2"),
 }
 
 UNUSUAL_KALMAN = Kalman(
@@ -154,7 +155,7 @@ KALMAN_CASES = {
     "Kalman, full": Case(partial(changing_sequence, FULL), Kalman(taps="5x5", standard_error=True)),
     "Kalman, split, unusual settings": Case(partial(changing_sequence, SPLIT), UNUSUAL_KALMAN),
     "Kalman, split": Case(partial(changing_sequence, SPLIT), Kalman(), 8),
-    "Kalman, albedo alone": Case(partial(changing_sequence, ("color", "albedo"), motion=2), Kalman(), 1),
+    "Kalman, albedo alone": Case(partial(changing_sequence, ("color", "albedo"), motion=2), Kalman(), 1, "exp2"),
     "Kalman, ids alone": Case(partial(changing_sequence, ("color", "id"), motion=2), Kalman(taa=True), 4),
 }
 
@@ -166,14 +167,14 @@ BILATERAL_CASES = {
         Sbf(gamma_depth=3.0, gamma_normal=1.5, alpha_color=0.6, depth_slope_floor=4e-3, sigma_depth=2.0),
         4,
     ),
-    "SBF, full": Case(partial(bumpy_sequence, FULL, count=2), Sbf(taa=True), 1),
+    "SBF, full": Case(partial(bumpy_sequence, FULL, count=2), Sbf(taa=True), 1, "exp2"),
     "LBF, plain": Case(partial(bumpy_sequence, PLAIN, count=3), Lbf()),
     "LBF, split": Case(
         partial(bumpy_sequence, SPLIT, count=3),
         Lbf(alpha_color=0.6, depth_slope_floor=4e-3, albedo_threshold=1.0, taa=True),
         4,
     ),
-    "LBF, full": Case(partial(bumpy_sequence, FULL, count=2), Lbf(), 1),
+    "LBF, full": Case(partial(bumpy_sequence, FULL, count=2), Lbf(), 1, "exp2"),
     "accumulation": Case(partial(bumpy_sequence, SPLIT), Accumulation(alpha_color=0.1, taa=True)),
 }
 
@@ -184,7 +185,7 @@ antialiased_cases = pytest.mark.parametrize("case", [name for name, case in CASE
 @functools.cache
 def measured(chosen: Case) -> dict[str, Deviation]:
     """How far each stage lies off the oracle; "out" goes by the name of what it is, modulated or resolved."""
-    with vector_width(chosen.width):
+    with vector_width(chosen.width, chosen.exponential):
         found = deviations(chosen.frames(), chosen.settings)
     return found | {"resolved" if chosen.settings.taa else "modulated": found.pop("out")}
 

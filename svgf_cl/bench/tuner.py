@@ -1,8 +1,8 @@
 """Finds a device's fastest tuning: races candidates against the default on frames of the built-in room.
 
-Coordinate descent, one race each for vector width, alignment of rows and work-group. In a race all denoise the same
-frames in turn, a few rounds at a time, and the slower half drops out. What counts is a candidate's time over the
-default's in the same round: whatever else the machine is doing hits both alike.
+Coordinate descent, one race each for vector width, exponential, alignment of rows and work-group. In a race all denoise
+the same frames in turn, a few rounds at a time, and the slower half drops out. What counts is a candidate's time over
+the default's in the same round: whatever else the machine is doing hits both alike.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import random
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from statistics import median
 from typing import Any
 
@@ -20,7 +20,7 @@ import pyopencl as cl
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.device.apart import summary
 from svgf_cl.device.layout import Layout
-from svgf_cl.device.tuning import VECTOR_WIDTHS, Tuning, default_tuning
+from svgf_cl.device.tuning import EXPONENTIALS, VECTOR_WIDTHS, Tuning, default_tuning
 from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.synthetic import PERIOD, room_frames
@@ -30,10 +30,16 @@ from svgf_cl.oracle.rounding import relative_error
 # GPUs run these whatever registers a kernel takes.
 CHOICES: dict[str, tuple[Any, ...]] = {
     "vector_width": VECTOR_WIDTHS,
+    "exponential": EXPONENTIALS,
     "row_alignment": (16, 64, 128, 256),
     "work_group": ((8, 1), (16, 1), (32, 1), (64, 1), (128, 1), (8, 8), (16, 4), (32, 4), (64, 4), (16, 16)),
 }
-STEPS = sum(map(len, CHOICES.values())) + 1  # of a search, as its progress is counted
+# Elsewhere than on a CPU. Vectors of 8 and 16 pixels need more registers than a work-item of a GPU has, and groups are
+# whole warps of any vendor: 64 items, or multiples of that.
+GPU_CHOICES: dict[str, tuple[Any, ...]] = CHOICES | {
+    "vector_width": (1, 4),
+    "work_group": ((64, 1), (128, 1), (256, 1), (8, 8), (16, 4), (32, 2), (16, 8), (32, 4), (64, 4), (32, 8), (16, 16)),
+}
 
 SECONDS = 45.0  # then no candidate is built any more and no round begun, but for the least that a verdict takes
 FINAL_SHARE = 0.15  # of these
@@ -100,6 +106,11 @@ class Trial:
         wins = sum(ratio < 1 for ratio in self.ratios)
         return self.ratio <= WORTHWHILE and wins >= CERTAIN * len(self.ratios)
 
+    def as_json(self) -> dict[str, Any]:
+        """What is known of it, for a file; None for what was not timed."""
+        timed = {"ms": self.time, "ratio": self.ratio} if self.times else {"ms": None, "ratio": None}
+        return {"tuning": str(self.tuning), "values": asdict(self.tuning), **timed, "fault": self.fault}
+
 
 @dataclass
 class Runner:
@@ -119,6 +130,8 @@ class Tuner:
         (height, width) of the frames to tune for, >= 1.
     queue : pyopencl.CommandQueue
         In order, with profiling.
+    seconds : float
+        For the search; the least that a verdict takes may take longer.
 
     Attributes
     ----------
@@ -130,17 +143,24 @@ class Tuner:
         The default as it did in the final, or in all races where there was none.
     """
 
-    def __init__(self, shape: Shape, queue: cl.CommandQueue) -> None:
+    def __init__(self, shape: Shape, queue: cl.CommandQueue, seconds: float = SECONDS) -> None:
         self._shape = shape
+        self._seconds = seconds
         self._queue = queue
         self._frames = list(room_frames(shape, PERIOD))
         self._out = np.empty((*shape, 3), np.float32)
         self._expected: np.ndarray | None = None
         self._random = random.Random(0)
+        self._choices = CHOICES if queue.device.type & cl.device_type.CPU else GPU_CHOICES
         self._default = Trial(default_tuning(queue.device))
         self.trials = [self._default]
         self.untried = 0
         self.reference = self._default
+
+    @property
+    def steps(self) -> int:
+        """Of a search, as its progress is counted."""
+        return sum(map(len, self._choices.values())) + 1
 
     def search(self, advance: Callable[[], None] = lambda: None) -> Trial:
         """Race the candidates, then the best of them against the default alone.
@@ -148,7 +168,7 @@ class Tuner:
         Parameters
         ----------
         advance : callable
-            Called `STEPS` times, for a progress bar.
+            Called `steps` times, for a progress bar.
 
         Returns
         -------
@@ -162,12 +182,12 @@ class Tuner:
         """
         begin = time.monotonic()
         best = self._default
-        for knob in CHOICES:
-            best = self._race(best, knob, begin + (1 - FINAL_SHARE) * SECONDS, advance)
+        for knob in self._choices:
+            best = self._race(best, knob, begin + (1 - FINAL_SHARE) * self._seconds, advance)
         final = Trial(best.tuning)
         if best is not self._default:
             self.reference = Trial(self._default.tuning)
-            self._run([self._enter(self.reference), self._enter(final)], FINAL_ROUNDS, begin + SECONDS)
+            self._run([self._enter(self.reference), self._enter(final)], FINAL_ROUNDS, begin + self._seconds)
         advance()
         return final
 
@@ -185,7 +205,7 @@ class Tuner:
         """The fastest of `best`, the default, and what comes of giving `best` other values of one knob."""
         default = self._enter(self._default)
         rivals = [] if best is self._default else [self._enter(best)]
-        for value in CHOICES[knob]:
+        for value in self._choices[knob]:
             rivals += self._candidate(replace(best.tuning, **{knob: value}), deadline)
             advance()
         rivals = [runner for runner in rivals if runner.warm_up <= HOPELESS * default.warm_up]
@@ -215,7 +235,7 @@ class Tuner:
 
     def _launch(self, tuning: Tuning) -> tuple[Any, ...]:
         """What a tuning comes to at this size."""
-        return tuning.vector_width, tuning.work_group, Layout(*self._shape, tuning.row_alignment).pitch
+        return *tuning.defines.values(), tuning.work_group, Layout(*self._shape, tuning.row_alignment).pitch
 
     def _enter(self, trial: Trial) -> Runner:
         """Warm up; `SvgfError` if the result is not the default's."""

@@ -1,31 +1,42 @@
-"""``svgf-cl tune``: the fastest vector width, work-group and layout of rows for this device."""
+"""``svgf-cl tune``: the fastest vector width, exponential, work-group and layout of rows for this device."""
 
 from __future__ import annotations
 
-from typing import Annotated
+import json as json_
+from pathlib import Path
+from typing import Annotated, Any
 
 import typer
 
-from svgf_cl.bench.tuner import STEPS, Trial, Tuner
+from svgf_cl.bench.tuner import SECONDS, Trial, Tuner
 from svgf_cl.cli.console import progress_bar, show
-from svgf_cl.cli.options import Size, parse_size
+from svgf_cl.cli.options import Size, check_files, parse_size
 from svgf_cl.device.devices import default_queue
 from svgf_cl.device.tuning import default_tuning, forget_tuning, store_path, store_tuning
 from svgf_cl.frame import Shape
-from svgf_cl.io.atomic import output_file
+from svgf_cl.io.atomic import output_file, write_text
 
+UNFINISHED = "the search has not come to its end"
 REMEDY = "make the machine idle or choose a smaller --size, and run it again"
 
 
 def tune(
     size: Size = "1280x720",
+    seconds: Annotated[
+        float, typer.Option(metavar="S", min=0.0, help="Time for the search; what it leaves untried is told.")
+    ] = SECONDS,
+    json: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Also write there what was tried, as JSON; anew after each trial."),
+    ] = None,
+    store: Annotated[bool, typer.Option(help="Remember what was found; else only tell it.")] = True,
     reset: Annotated[bool, typer.Option("--reset", help="Forget what was found for this device, and leave.")] = False,
 ) -> None:
     """Find how this device denoises fastest, and remember it for its driver.
 
-    Times vector widths, work-groups and alignments of rows against the default on a built-in room, in less than a
-    minute, and stores the fastest where every later run finds it; the default, unless something is faster beyond noise.
-    Pictures stay the same to within rounding. PYOPENCL_CTX picks another device.
+    Times vector widths, exponentials, work-groups and alignments of rows against the default on a built-in room, in
+    less than a minute, and stores the fastest where every later run finds it; the default, unless something is faster
+    beyond noise. Pictures stay the same to within rounding. PYOPENCL_CTX picks another device.
 
     Exit code 1, and nothing is stored, where the machine was too busy to tell: candidates were left out for lack of
     time, or the default's own time wavers. Make the machine idle or choose a smaller --size, and run it again.
@@ -33,21 +44,33 @@ def tune(
     \b
     Examples:
       svgf-cl tune
-      PYOPENCL_CTX=1:0 svgf-cl tune --size 1920x1080
+      PYOPENCL_CTX=1:0 svgf-cl tune --size 1920x1080 --json tune.json
       svgf-cl tune --reset
     """
     shape = parse_size(size)
     output_file(store_path())
+    check_files(json)
     queue = default_queue()
     device = queue.device
     print(f"device: {device.name} ({device.platform.version})")
     if reset:
         print(f"untuned again in {forget_tuning(device)}")
         return
-    tuner = Tuner(shape, queue)
-    with progress_bar("tuning", STEPS) as advance:
-        final = tuner.search(advance)
-    columns = ("vector", "rows", "group", "ms", "Mpixel/s", "time/default")
+    tuner = Tuner(shape, queue, seconds)
+
+    def note(found: str) -> None:
+        if json:
+            write_text(json, json_.dumps(as_json(tuner, found, size), indent=1))
+
+    with progress_bar("tuning", tuner.steps) as advance:
+
+        def step() -> None:
+            advance()
+            note(UNFINISHED)
+
+        final = tuner.search(step)
+    note(verdict(final))
+    columns = ("vector", "exponential", "rows", "group", "ms", "Mpixel/s", "time/default")
     show(f"{size}, in the order tried", columns, [trial_row(trial, shape) for trial in tuner.trials])
     for trial in tuner.trials:
         if trial.fault:
@@ -57,13 +80,20 @@ def tune(
         typer.echo(f"nothing is stored: {', and '.join(tuner.doubts)}; {REMEDY}", err=True)
         raise typer.Exit(1)
     chosen = final.tuning if final.is_faster else default_tuning(device)
-    print(f"{chosen}: stored in {store_tuning(device, chosen)}")
+    print(f"{chosen}: stored in {store_tuning(device, chosen)}" if store else f"{chosen}: not stored, as asked")
+
+
+def as_json(tuner: Tuner, found: str, size: str) -> dict[str, Any]:
+    """What a search has tried so far, for a file."""
+    trials = [trial.as_json() for trial in tuner.trials]
+    return {"size": size, "verdict": found, "doubts": tuner.doubts, "trials": trials}
 
 
 def trial_row(trial: Trial, shape: Shape) -> tuple[str, ...]:
     """Spell one row of the table; a dash for what was not timed."""
     tuning = trial.tuning
-    cells = str(tuning.vector_width), str(tuning.row_alignment), "{}x{}".format(*tuning.work_group)
+    group = "{}x{}".format(*tuning.work_group)
+    cells = str(tuning.vector_width), tuning.exponential, str(tuning.row_alignment), group
     if not trial.times:
         return (*cells, "-", "-", "-")
     return (*cells, f"{trial.time:.2f}", f"{1e-3 * shape[0] * shape[1] / trial.time:.0f}", f"{trial.ratio:.3f}")

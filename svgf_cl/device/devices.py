@@ -13,14 +13,15 @@ from dataclasses import dataclass, field, replace
 
 import pyopencl as cl
 
-from svgf_cl.device import apart, driver_caches, icd_files, intel_runtime, probe
+from svgf_cl.device import apart, driver_caches, icd_files, probe, registration
+from svgf_cl.device.drivers import INTEL
 from svgf_cl.device.process import check_process
 from svgf_cl.errors import DeviceError
 from svgf_cl.io import cache
 
 # Here, as `import svgf_cl` comes by: a loader looks once, when anyone in this process first lists the platforms.
 driver_caches.do_without()
-intel_runtime.register()
+registration.register()
 
 # By pyopencl's own name, so that it means the same in every program.
 VARIABLE = "PYOPENCL_CTX"
@@ -29,7 +30,7 @@ POCL = "Portable Computing Language"
 
 # A CPU is as fast as its driver's compiler. The order is that of docs/extending.md, fastest first;
 # compute units and clock say nothing here, as all drivers report the same silicon (and Intel's a clock of 0).
-CPU_PLATFORMS = (intel_runtime.PLATFORM, POCL)
+CPU_PLATFORMS = (INTEL.platform, POCL)
 
 # A simulator claims to be of every type; it finds bugs and is thousands of times slower than anything else.
 SIMULATOR = "Oclgrind"
@@ -209,8 +210,8 @@ def _survey(*, refresh: bool = False) -> list[DeviceReport]:
         if not devices:
             reports.append(_unlisted(str(index), platform.name, "the driver lists no device", platform.version))
         reports += [_report(f"{index}:{number}", device, refresh) for number, device in enumerate(devices)]
-    if reason := intel_runtime.why_unlisted({platform.name for platform in platforms}):
-        reports.append(_unlisted("-", intel_runtime.PLATFORM, reason))
+    listed = {platform.name for platform in platforms}
+    reports += [_unlisted("-", driver.platform, reason) for driver, reason in registration.why_unlisted(listed)]
     return [*reports, *unusable]
 
 

@@ -1,4 +1,6 @@
-"""`Tuning`: how kernels are cut into vectors and work-groups and rows laid out, and the best known for each device."""
+"""`Tuning`: how kernels are cut into vectors and work-groups, rows laid out and exponentials taken, and the best known
+for each device.
+"""
 
 from __future__ import annotations
 
@@ -21,11 +23,10 @@ from svgf_cl.io.cache import cache_folder, device_key
 
 STORE = "tunings.json"
 VECTOR_WIDTHS = (1, 4, 8, 16)  # what kernels/vectors.clh is written for
+EXPONENTIALS = ("polynomial", "exp2")  # of kernels/surface.clh
 
-# On a CPU most of a row, as each work-group costs its driver a tenth of a microsecond or more; on a GPU, where a vector
-# is one pixel, a tile of whole warps.
+# Most of a row, as each work-group costs a CPU's driver a tenth of a microsecond or more.
 CPU_WORK_GROUP = (64, 1)
-GPU_WORK_GROUP = (32, 4)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,6 +41,9 @@ class Tuning:
         Size of a work-group, along a row and down; less for a kernel of which the device can run fewer together.
     row_alignment : int, pixels, 16 .. 512, a multiple of 16
         Rows of the device's planes are a multiple of it apart; see `svgf_cl.device.layout.Layout`.
+    exponential : str, "polynomial" or "exp2"
+        How precise weights are computed: by a polynomial, relative error below 4e-6, or by OpenCL's function, at most
+        4 ulp. Fast weights are the same with both.
 
     Raises
     ------
@@ -50,6 +54,7 @@ class Tuning:
     vector_width: int
     work_group: tuple[int, int]
     row_alignment: int = ROW_ALIGNMENT
+    exponential: str = "polynomial"
 
     def __post_init__(self) -> None:
         if not isinstance(self.vector_width, int) or self.vector_width not in VECTOR_WIDTHS:
@@ -63,10 +68,20 @@ class Tuning:
                 f"Tuning.row_alignment: expected a multiple of {WIDEST_VECTOR} in {WIDEST_VECTOR}..{PAGE // 2}, "
                 f"got {shown(self.row_alignment)}"
             )
+        if self.exponential not in EXPONENTIALS:
+            raise SvgfError(f"Tuning.exponential: expected one of {EXPONENTIALS}, got {shown(self.exponential)}")
 
     def __str__(self) -> str:
         along, down = self.work_group
-        return f"vectors of {self.vector_width}, rows aligned to {self.row_alignment}, work-groups of {along}x{down}"
+        return (
+            f"vectors of {self.vector_width}, {self.exponential}, rows aligned to {self.row_alignment}, "
+            f"work-groups of {along}x{down}"
+        )
+
+    @property
+    def defines(self) -> dict[str, int]:
+        """The macros of kernels that it decides."""
+        return {"VW": self.vector_width, "EXP2": int(self.exponential == "exp2")}
 
     def check(self, device: cl.Device) -> None:
         """Raise `DeviceError` where `device` has no work-groups as large as these."""
@@ -77,6 +92,10 @@ class Tuning:
                 f"Tuning.work_group: expected at most {most[0]} work-items, {most[1]} along a row and {most[2]} down, "
                 f"on {device.name}; got {self.work_group}"
             )
+
+
+# What suits most GPUs: a vector is one pixel, a work-group a tile of whole warps, and exp2 a single instruction.
+GPU_TUNING = Tuning(vector_width=1, work_group=(32, 4), exponential="exp2")
 
 
 def best_tuning(device: cl.Device) -> Tuning:
@@ -92,7 +111,7 @@ def default_tuning(device: cl.Device) -> Tuning:
     single pixels.
     """
     if not device.type & cl.device_type.CPU:
-        return Tuning(vector_width=1, work_group=GPU_WORK_GROUP)
+        return GPU_TUNING
     native = device.native_vector_width_float
     return Tuning(vector_width=min(16, 2 * native) if native > 1 else 1, work_group=CPU_WORK_GROUP)
 

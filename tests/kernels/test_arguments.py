@@ -14,6 +14,7 @@ import pyopencl as cl
 import pytest
 
 from svgf_cl.device import programs
+from svgf_cl.device.tuning import GPU_TUNING
 from svgf_cl.filters import FILTERS
 from svgf_cl.filters.pipeline import Pass, Pipeline
 from svgf_cl.filters.signals import SPLITS, Inputs
@@ -35,7 +36,7 @@ def pipeline_of(name: str, inputs: Inputs, *, taa: bool) -> Pipeline:
 
 
 def options(entry: Pass, pipeline: Pipeline) -> tuple[str, ...]:
-    return programs.options_of(entry.source, {"VW": 1, **pipeline.defines})
+    return programs.options_of(entry.source, GPU_TUNING.defines | pipeline.defines)
 
 
 @functools.cache

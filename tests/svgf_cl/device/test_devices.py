@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import pyopencl as cl
@@ -13,10 +13,12 @@ import pytest
 
 from svgf_cl import DeviceError
 from svgf_cl.cli import main
-from svgf_cl.device import apart, devices, icd_files, intel_runtime, probe
+from svgf_cl.device import apart, devices, icd_files, probe, registration
+from svgf_cl.device.drivers import INTEL as INTEL_RUNTIME
+from svgf_cl.device.drivers import NVIDIA
 
 POCL = "Portable Computing Language"
-INTEL = intel_runtime.PLATFORM
+INTEL = INTEL_RUNTIME.platform
 ROOT = Path(__file__).resolve().parents[3]
 
 
@@ -58,8 +60,7 @@ def machine(monkeypatch):
 
     def install(*platforms: FakePlatform) -> None:
         monkeypatch.setattr(cl, "get_platforms", lambda: list(platforms))
-        monkeypatch.setattr(intel_runtime, "register", lambda: None)
-        monkeypatch.setattr(intel_runtime, "find", lambda: None)
+        monkeypatch.setattr(registration, "DRIVERS", ())
         monkeypatch.setattr(icd_files, "faults", list)
         monkeypatch.setattr(probe, "reason", lambda device, *, refresh: device.reason)
 
@@ -268,10 +269,25 @@ def test_a_platform_that_cannot_list_its_devices_does_not_hide_the_others(machin
     assert listed[1].is_default
 
 
-def test_an_installed_but_unlisted_intel_runtime_is_reported(machine, monkeypatch):
+def test_an_installed_but_unlisted_driver_is_reported(machine, monkeypatch):
     machine(FakePlatform(POCL, [FakeDevice("good")]))
-    monkeypatch.setattr(intel_runtime, "why_unlisted", lambda names: f"unlike {sorted(names)}")
-    assert devices.list_devices()[-1].reason == f"unlike {[POCL]}"
+    monkeypatch.setattr(registration, "why_unlisted", lambda names: [(INTEL_RUNTIME, f"unlike {sorted(names)}")])
+    found = devices.list_devices()[-1]
+    assert (found.platform, found.reason) == (INTEL, f"unlike {[POCL]}")
+
+
+def test_command_names_a_gpu_of_which_the_driver_is_half_there(machine, monkeypatch, command, tmp_path):
+    machine(FakePlatform(POCL, [FakeDevice("good")]))
+    kernel = tmp_path / "nvidiactl"
+    kernel.touch()
+    half = replace(NVIDIA, kernel=(str(kernel),), folders=lambda: iter(()))
+    monkeypatch.setattr("ctypes.util.find_library", lambda _: None)
+    monkeypatch.setattr(registration, "DRIVERS", (half,))
+    code, table, _ = command()
+    assert code == 0
+    shown = "".join(part.strip("│ ") for part in table.replace("\n", "│").split("│"))
+    for words in ("NVIDIA CUDA", "libnvidia-opencl.so.1", "NVIDIA_DRIVER_CAPABILITIES=compute,utility"):
+        assert words.replace(" ", "") in shown.replace(" ", "")
 
 
 def test_this_machine_has_a_working_device(queue):
@@ -375,6 +391,14 @@ def make(folder: Path, target: str) -> str:
 def test_make_repairs_a_device_that_has_gone(checkout):
     assert "installing PoCL" in make(checkout, "demo")
     assert "installing" not in make(checkout, "demo")
+
+
+def test_make_gpu_installs_nothing(checkout):
+    child = subprocess.run(["make", "gpu"], cwd=checkout, capture_output=True, text=True)
+    assert child.returncode  # no device works
+    assert not (checkout / "driver").exists()  # apt-get would have made it
+    (checkout / "driver").touch()
+    assert "installing" not in make(checkout, "gpu")
 
 
 def test_make_installs_nothing_because_of_a_wrong_name(checkout, monkeypatch):

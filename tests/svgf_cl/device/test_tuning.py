@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -20,7 +20,7 @@ from svgf_cl.plan import fitting
 from tests.denoising import vector_width
 from tests.frames import wall
 
-ODD = Tuning(vector_width=4, work_group=(8, 2), row_alignment=128)
+ODD = Tuning(vector_width=4, work_group=(8, 2), row_alignment=128, exponential="exp2")
 
 
 @dataclass
@@ -53,6 +53,8 @@ def memory(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
         ("row_alignment", 8),
         ("row_alignment", 24),
         ("row_alignment", 1024),
+        ("exponential", "exp"),
+        ("exponential", 2),
     ],
 )
 def test_values_out_of_range(field: str, value: object) -> None:
@@ -69,6 +71,7 @@ def test_a_gpu_treats_pixels_one_by_one() -> None:
     chosen = default_tuning(FakeDevice(cl.device_type.GPU, native_vector_width_float=4))
     assert chosen.vector_width == 1
     assert math.prod(chosen.work_group) % 64 == 0  # whole warps of any vendor
+    assert chosen.exponential == "exp2"
 
 
 @pytest.mark.parametrize("group", [(32, 16), (512, 1), (1, 129)])
@@ -110,21 +113,29 @@ def test_devices_and_drivers_are_kept_apart(memory: Path) -> None:
     assert stored_tuning(FakeDevice(name="another")) is None
 
 
+def test_what_a_stored_tuning_does_not_say_is_the_usual(memory: Path) -> None:
+    store_tuning(FakeDevice(), ODD)
+    memory.write_text(memory.read_text().replace(',\n   "exponential": "exp2"', ""))
+    assert stored_tuning(FakeDevice()) == replace(ODD, exponential="polynomial")
+
+
 def test_a_tuning_is_for_the_kernels_it_was_found_with(memory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     store_tuning(FakeDevice(), ODD)
     monkeypatch.setattr(tuning, "kernels_digest", lambda: "others")
     assert stored_tuning(FakeDevice()) is None
 
 
-@pytest.mark.parametrize(
-    "damage", ["", "[]", "nested", "no JSON", '{"vector_width": 3}', "vector_width", "work_group", "entry"]
-)
+DAMAGE = ("", "[]", "nested", "no JSON", '{"vector_width": 3}', "vector_width", "work_group", "exponential", "entry")
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
 def test_a_file_that_cannot_be_used_is_named_and_changes_nothing(damage: str, memory: Path) -> None:
     store_tuning(FakeDevice(), ODD)
     text = memory.read_text()
     broken = {
         "vector_width": text.replace('"vector_width": 4', '"vector_width": 3'),
         "work_group": text.replace("work_group", "group"),
+        "exponential": text.replace('"exp2"', '"exp"'),
         "nested": "[" * 99999,
         "entry": json.dumps(dict.fromkeys(json.loads(text), 4)),
         '{"vector_width": 3}': text.replace("kernels", "colonels"),

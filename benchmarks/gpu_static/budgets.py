@@ -1,0 +1,78 @@
+"""Registers that each kernel may take on each architecture, as recorded: the most of all its variants."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+
+from benchmarks.gpu_static.gate import Row
+from svgf_cl.errors import FileError
+from svgf_cl.io.atomic import read_json, unreadable, write_text
+
+FILE = Path(__file__).with_name("budgets.json")
+RECORD = "'python -m benchmarks.gpu_static --record' records what is found"
+COMPILERS = "compilers"  # beside the kernels: what they were compiled with
+
+Budgets = Mapping[str, Mapping[str, int]]  # registers by architecture, by kernel
+
+
+def of(rows: Iterable[Row]) -> dict[str, dict[str, int]]:
+    """The most registers of each kernel on each architecture."""
+    found: dict[str, dict[str, int]] = {}
+    for row in rows:
+        most = found.setdefault(row.name, {})
+        most[row.architecture] = max(most.get(row.architecture, 0), row.usage.registers)
+    return {name: found[name] for name in sorted(found)}
+
+
+def exceeded(rows: Iterable[Row], budgets: Budgets) -> Iterator[str]:
+    """Every row that takes more than its budget, and every budget that is missing or of no kernel."""
+    rows = list(rows)
+    for row in rows:
+        budget = budgets.get(row.name, {}).get(row.architecture)
+        if budget is not None and row.usage.registers > budget:
+            yield (
+                f"{row.place}: expected at most {budget} registers, found {row.usage.registers}; "
+                f"keep fewer values alive at a time, or, if it is worth them, {RECORD}"
+            )
+    compiled = pairs(of(rows))
+    recorded = pairs(budgets)
+    for name, architecture in sorted(compiled - recorded):
+        yield f"{name} on {architecture}: expected a budget of registers in {FILE.name}, found none; {RECORD}"
+    for name, architecture in sorted(recorded - compiled):
+        yield f"{name} on {architecture}: expected a kernel, found a budget in {FILE.name} alone; {RECORD}"
+
+
+def pairs(budgets: Budgets) -> set[tuple[str, str]]:
+    """Kernels and architectures that have a budget."""
+    return {(name, architecture) for name, by_architecture in budgets.items() for architecture in by_architecture}
+
+
+def read(path: Path) -> tuple[Budgets, Mapping[str, str]]:
+    """Read budgets, and the versions of compilers with which they were recorded.
+
+    Raises
+    ------
+    FileError
+        It cannot be read, or holds something else.
+    """
+    try:
+        document = read_json(path)
+        compilers = {str(name): str(version) for name, version in document.pop(COMPILERS).items()}
+        kernels = {
+            str(name): {str(architecture): int(registers) for architecture, registers in each.items()}
+            for name, each in document.items()
+        }
+    except OSError as error:
+        raise unreadable(path, error) from error
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise FileError(f"{path}: expected budgets, got something else ({error!r}); {RECORD}") from error
+    return kernels, compilers
+
+
+def record(path: Path, rows: Iterable[Row], compilers: Mapping[str, str]) -> None:
+    """Write what is found as budgets, a kernel a line."""
+    entries = {COMPILERS: dict(compilers), **of(rows)}
+    lines = ",\n".join(f" {json.dumps(name)}: {json.dumps(entry)}" for name, entry in entries.items())
+    write_text(path, f"{{\n{lines}\n}}\n")

@@ -1,0 +1,128 @@
+"""Compiles every variant for every target, and tells what is wrong with any."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from benchmarks.builds import Build
+from benchmarks.gpu_static import amd, nvidia, spirv
+from benchmarks.gpu_static.occupancy import LIMITS
+from benchmarks.gpu_static.tools import Tools
+from benchmarks.gpu_static.usage import Compiled, Instructions, RejectedError, Usage
+from svgf_cl.device.tuning import GPU_TUNING
+
+ARCHITECTURES = (*nvidia.ARCHITECTURES, *amd.ARCHITECTURES)
+TARGETS = (*ARCHITECTURES, spirv.NAME)
+WORK_GROUP = GPU_TUNING.work_group[0] * GPU_TUNING.work_group[1]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of one build on one target: its kernels by name, none of SPIR-V, or why it was refused."""
+
+    build: Build
+    target: str
+    kernels: Mapping[str, Compiled] = field(default_factory=dict)
+    fault: str = ""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A kernel of a build on one architecture."""
+
+    source: str
+    kernel: str
+    variant: str
+    architecture: str
+    usage: Usage
+    instructions: Instructions
+
+    @property
+    def name(self) -> str:
+        """The kernel behind its file."""
+        return f"{self.source}/{self.kernel}"
+
+    @property
+    def occupancy(self) -> float:
+        """With the work-groups that GPUs are given by default, 0..1."""
+        return LIMITS[self.architecture].occupancy(self.usage, WORK_GROUP)
+
+    @property
+    def place(self) -> str:
+        """Which it is, for messages."""
+        return f"kernel {self.kernel} of {self.source}.cl on {self.architecture} ({self.variant})"
+
+    def faults(self) -> Iterator[str]:
+        """What no kernel may do on any architecture."""
+        if self.usage.spills:
+            unit = "bytes of registers" if self.architecture in nvidia.ARCHITECTURES else "registers"
+            yield (
+                f"{self.place}: expected no registers spilled, found {self.usage.spills} {unit} spilled; "
+                "keep fewer values alive at a time"
+            )
+        if self.usage.scratch:
+            yield (
+                f"{self.place}: expected no scratch memory, found {self.usage.scratch} bytes a work-item; "
+                "unroll loops whose index picks elements of an array (UNROLLED_FOR)"
+            )
+
+
+def compile_all(tools: Tools, builds: Sequence[Build], advance: Callable[[], None]) -> list[Outcome]:
+    """Compile every build for every target, as many at a time as there are processors; in the order of the builds."""
+
+    def compiled(job: tuple[Build, str]) -> Outcome:
+        outcome = compile_one(tools, *job)
+        advance()
+        return outcome
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(compiled, ((build, target) for build in builds for target in TARGETS)))
+
+
+def compile_one(tools: Tools, build: Build, target: str) -> Outcome:
+    """Compile a build for a target."""
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            return Outcome(build, target, kernels(tools, build, target, Path(folder)))
+        except RejectedError as error:
+            expected = "a valid module" if target == spirv.NAME else "kernels that compile"
+            place = f"{build.source}.cl on {target} ({build.variant})"
+            return Outcome(build, target, fault=f"{place}: expected {expected}; {error}")
+
+
+def kernels(tools: Tools, build: Build, target: str, folder: Path) -> dict[str, Compiled]:
+    """The kernels of a build on a target; of SPIR-V nothing is known but that it is valid."""
+    if target == spirv.NAME:
+        spirv.validate(tools, build, folder)
+        return {}
+    if target in nvidia.ARCHITECTURES:
+        return nvidia.compiled(tools, target, build, folder)
+    return amd.compiled(tools, target, build, folder)
+
+
+def rows(tools: Tools, outcomes: Sequence[Outcome]) -> list[Row]:
+    """A row for every kernel that was compiled, architecture by architecture."""
+    found = []
+    for architecture in ARCHITECTURES:
+        every = [
+            (outcome.build, name, kernel)
+            for outcome in outcomes
+            if outcome.target == architecture
+            for name, kernel in outcome.kernels.items()
+        ]
+        counts = instructions(tools, architecture, [kernel.code for _, _, kernel in every])
+        for (build, name, kernel), counted in zip(every, counts, strict=True):
+            found.append(Row(build.source, name, build.variant, architecture, kernel.usage, counted))
+    return found
+
+
+def instructions(tools: Tools, architecture: str, codes: Sequence[bytes]) -> list[Instructions]:
+    """Count the instructions of kernels on an architecture."""
+    if architecture in nvidia.ARCHITECTURES:
+        return nvidia.instructions(tools, architecture, codes)
+    return amd.instructions(codes)
