@@ -16,5 +16,6 @@ setup(
         "svgf_cl.kernels": ["*.cl", "*.clh"],
         "svgf_cl.bench": ["*.cl", "*.html"],
         "svgf_cl.compare": ["*.html", "*.css", "*.js"],
+        "svgf_cl.view": ["*.html", "*.css", "*.js"],
     },
 )

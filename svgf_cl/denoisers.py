@@ -45,6 +45,16 @@ class Denoisers:
         picture: Picture = self._made[key].denoise(frame)
         return picture
 
+    def update(self, settings: Filter) -> None:
+        """Go on with other settings, as `Denoiser.update`; what is denoised in tiles begins anew."""
+        self._settings = settings
+        for key, made in list(self._made.items()):
+            if isinstance(made, TiledDenoiser):
+                del self._made[key]
+                made.close()
+            else:
+                made.update(settings)
+
     def has_stage(self, key: Hashable, name: str) -> bool:
         """Whether the last frame called `key` has an intermediate result of that name."""
         return key in self._made and name in self._made[key].stages

@@ -135,6 +135,10 @@ class LightsDenoiser:
                 squares.append(np.square(error if factor is None else error * (factor @ WEIGHTS)))
         return np.sqrt(np.sum(squares, axis=0, dtype=np.float32)) if squares else None
 
+    def update(self, settings: Filter) -> None:
+        """Go on with other settings for all lights, as `Denoisers.update`."""
+        self._denoisers.update(settings)
+
     def reset(self) -> None:
         """Forget the past, as at a cut."""
         self._denoisers.reset()

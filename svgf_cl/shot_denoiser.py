@@ -122,6 +122,11 @@ class ShotDenoiser:
         assert isinstance(settings, TemporalFilter)
         return settings.uncertainty(partial(self._lights.stage, channels))
 
+    def update(self, settings: Filter) -> None:
+        """Go on with other settings or another filter, as `Denoisers.update`; guides are filtered as before."""
+        self._lights.update(settings)
+        self._method = replace(self._method, settings=settings)
+
     def reset(self) -> None:
         """Forget the past, as at a cut."""
         self._lights.reset()

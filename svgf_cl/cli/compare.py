@@ -168,13 +168,6 @@ def needs_packages() -> None:
 
 def are_pictures(inputs: Sequence[str]) -> bool:
     """Whether these are EXR files or folders of them, rather than scenes."""
-
-    def is_scene(text: str) -> bool:
-        path = Path(text)
-        is_described = path.is_dir() and (path / "scene.json").exists()
-        is_name = not path.exists() and len(path.parts) == 1 and not path.suffix
-        return is_described or is_name or path.suffix.lower() in SCENE_FILES
-
     pictures = [text for text in inputs if not is_scene(text)]
     for text in pictures:
         require(Path(text))
@@ -182,6 +175,14 @@ def are_pictures(inputs: Sequence[str]) -> bool:
         scene = next(text for text in inputs if text not in pictures)
         raise SvgfError(f"expected scenes or pictures, got both: {scene} is a scene, {pictures[0]} is none")
     return bool(pictures)
+
+
+def is_scene(text: str) -> bool:
+    """Whether this is a scene's name or file, rather than an EXR file or a folder of them."""
+    path = Path(text)
+    is_described = path.is_dir() and (path / "scene.json").exists()
+    is_name = not path.exists() and len(path.parts) == 1 and not path.suffix
+    return is_described or is_name or path.suffix.lower() in SCENE_FILES
 
 
 def refuse_rendering(options: Mapping[str, object]) -> None:

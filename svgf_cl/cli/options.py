@@ -15,12 +15,12 @@ from svgf_cl.errors import SettingsError, SvgfError, shown
 from svgf_cl.filters import FILTERS
 from svgf_cl.filters.filter import Filter
 from svgf_cl.io.atomic import output_file
+from svgf_cl.io.display import MAX_STOPS
 from svgf_cl.settings import Domain, Switch, Value, defaults, domains
 
 # A slip of the hand beyond it: of so many pixels squared, one plane of float4 takes 16 GiB.
 MAX_SIDE = 32768
 MAX_FRAMES = 1_000_000  # eleven hours at 24 a second
-MAX_STOPS = 64
 
 STDOUT = Path("-")  # as --json has it
 

@@ -7,7 +7,6 @@ const tools = document.getElementById("tools");
 const divider = document.getElementById("divider");
 const scenes = [...document.querySelectorAll(".scene")];
 const MOST = 64; // times the whole picture
-const within = (value, low, high) => Math.min(Math.max(value, low), high);
 
 // Which scene, which rivals
 
@@ -97,7 +96,7 @@ function show() {
   }
 }
 
-// Keys, wheel, mouse and fingers
+// Keys
 
 const KEYS = {
   ArrowLeft: () => panBy(0.1, 0),
@@ -116,53 +115,6 @@ function press(event) {
   if (!act || event.target !== event.currentTarget || event.ctrlKey || event.metaKey || event.altKey) return;
   event.preventDefault();
   act();
-}
-
-// Where in a pane an event is, in its widths and heights.
-function place(event, pane) {
-  const box = pane.getBoundingClientRect();
-  return { x: (event.clientX - box.left) / box.width, y: (event.clientY - box.top) / box.height };
-}
-
-function turn(event) {
-  const pane = event.target.closest(".pane");
-  if (!pane || (event.deltaY > 0 && view.zoom === 1)) return; // nothing smaller: the page scrolls
-  event.preventDefault();
-  zoomBy(Math.exp(-within(event.deltaY, -100, 100) / 250), place(event, pane));
-}
-
-const held = new Map(); // the pointers that are down: where each is in the pane in which the first came down
-
-function hold(event) {
-  const [first] = held.values();
-  const pane = first?.pane ?? event.target.closest(".pane");
-  if (!pane || event.button !== 0) return;
-  held.set(event.pointerId, { pane, ...place(event, pane) });
-  pane.setPointerCapture(event.pointerId);
-}
-
-function drag(event) {
-  const pane = held.get(event.pointerId)?.pane ?? event.target.closest(".pane");
-  if (held.has(event.pointerId)) {
-    const before = grip();
-    held.set(event.pointerId, { pane, ...place(event, pane) });
-    const after = grip();
-    if (held.size > 1) zoomBy(after.spread / before.spread, before); // first, or there may be no room to pan
-    panBy(after.x - before.x, after.y - before.y);
-  }
-  point(pane && place(event, pane));
-}
-
-function release(event) {
-  held.delete(event.pointerId);
-}
-
-// The middle of all pointers that are down, and how far they are from it.
-function grip() {
-  const all = [...held.values()];
-  const x = all.reduce((sum, each) => sum + each.x, 0) / all.length;
-  const y = all.reduce((sum, each) => sum + each.y, 0) / all.length;
-  return { x, y, spread: Math.max(0.01, ...all.map(each => Math.hypot(each.x - x, each.y - y))) };
 }
 
 function point(at) {
@@ -333,9 +285,8 @@ function restart(part) {
 
 for (const sign of controls.querySelectorAll(".swatch")) swatch(sign, sign.previousElementSibling.value);
 for (const each of document.querySelectorAll(".stage")) {
-  const acts = { keydown: press, wheel: turn, pointerdown: hold, pointermove: drag, pointerup: release, pointercancel: release };
-  for (const [name, act] of Object.entries(acts)) each.addEventListener(name, act, { passive: false });
-  each.addEventListener("pointerleave", () => point(null));
+  each.addEventListener("keydown", press);
+  gestures(each, { zoomBy, panBy, point, isWhole: () => view.zoom === 1 });
 }
 for (const button of document.querySelectorAll(".together")) button.addEventListener("click", () => restart(button.closest(".part")));
 for (const part of document.querySelectorAll(".part")) part.open = !matchMedia("(prefers-reduced-motion: reduce)").matches;

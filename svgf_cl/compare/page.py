@@ -146,8 +146,8 @@ def render(page: Page) -> str:
     return environment.from_string(_file("page.html")).render(
         page=page,
         rivals=rivals(page),
-        style=Markup(_file("page.css")),
-        script=Markup(_file("page.js")),
+        style=Markup(_file("controls.css") + _file("page.css")),
+        script=Markup(_file("gestures.js") + _file("page.js")),
         data=data(page),
         summary=table(page.scenes, page.measures),
         tables=[table([scene], page.measures) for scene in page.scenes],

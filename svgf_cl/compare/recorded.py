@@ -130,19 +130,30 @@ def open_frames(frames: Sequence[Path], reference: Path, *, jitter: bool) -> Rec
     for path in sorted(after_gaps(files)):
         raise FileError(f"{path}: expected the frame before it, from which filters go on, found none")
     paths = {number_of(path): path for path in files}
+    return Recorded(paths, find_references(reference, list(paths)), jitter)
+
+
+def find_references(reference: Path, numbers: Sequence[int]) -> dict[int, Path]:
+    """The files that say what some frames converge to, by the frames' numbers: a picture, or those of a folder.
+
+    Raises
+    ------
+    FileError
+        Where one has no frame among `numbers`.
+    """
     require(reference)
     if reference.is_dir():
         references = by_number(reference, "reference")
-    elif len(paths) == 1:
-        references = dict.fromkeys(paths, reference)
+    elif len(numbers) == 1:
+        references = dict.fromkeys(numbers, reference)
     elif frame_number(reference) is None:
-        raise FileError(f"{reference}: expected in its name the number of one of the {len(paths)} frames, found none")
+        raise FileError(f"{reference}: expected in its name the number of one of the {len(numbers)} frames, found none")
     else:
         references = {number_of(reference): reference}
     for number, path in references.items():
-        if number not in paths:
+        if number not in numbers:
             raise FileError(f"{path}: expected a frame number {number} among the frames, found none")
-    return Recorded(paths, references, jitter)
+    return references
 
 
 def open_pictures(pictures: Path, references: Path) -> Pictures:

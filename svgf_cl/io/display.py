@@ -15,6 +15,7 @@ from svgf_cl.io.atomic import written_whole
 Linear = npt.NDArray[np.floating]
 Bytes = npt.NDArray[np.uint8]
 
+MAX_STOPS = 64  # of exposure: beyond, all is black or white
 MIDDLE_GREY = 0.18
 BLOCK = 8  # pixels
 QUALITY = 90  # of a WebP: it hides nothing; PNG ignores it

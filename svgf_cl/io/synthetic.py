@@ -14,6 +14,7 @@ Array = NDArray[np.float64]
 
 HALF_SIZE = np.array([4.0, 2.0, 6.0])  # the room reaches from -HALF_SIZE to HALF_SIZE
 TILES_PER_UNIT = 2.0
+LIGHT = 0.5  # mean of each signal over the albedo
 FOCAL_LENGTH = 0.9  # in image heights
 # The camera looks along -z and goes round a small loop in so many frames: they may be sent over and over.
 PERIOD = 8
@@ -48,7 +49,7 @@ def room_frame(shape: Shape, index: int, previous: int, *, signals: int = 1, see
     deeper = -past[..., 2:] - view.depth[..., None]
     motion = np.concatenate([project(past, shape) - pixels(shape), deeper], axis=-1)
     rng = np.random.default_rng((seed, index))
-    lights = [0.5 * view.albedo * rng.exponential(1.0, (*shape, 1)) for _ in range(signals)]
+    lights = [LIGHT * view.albedo * rng.exponential(1.0, (*shape, 1)) for _ in range(signals)]
     split = {} if signals == 1 else {"direct": lights[0], "indirect": lights[1]}
     surface = {"albedo": view.albedo, "normal": view.normal, "depth": view.depth, "motion": motion}
     fields = {"color": sum(lights), **split, **surface}

@@ -1,0 +1,148 @@
+"""``svgf-cl view``: plays noisy, denoised and reference pictures beside each other, in the browser."""
+
+from __future__ import annotations
+
+import webbrowser
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from svgf_cl.cli import reading
+from svgf_cl.cli.compare import is_scene, refuse_rendering
+from svgf_cl.cli.console import progress_bar
+from svgf_cl.cli.options import (
+    MAX_FRAMES,
+    AllowGaps,
+    Exposure,
+    FilterName,
+    SettingTexts,
+    parse_measured_size,
+    parse_settings,
+)
+from svgf_cl.cli.remarks import described
+from svgf_cl.errors import SvgfError
+from svgf_cl.filters import DEFAULT
+from svgf_cl.io.reading import ReadAs
+from svgf_cl.io.sequence import find_frames, number_of
+from svgf_cl.io.shot import Shot
+
+if TYPE_CHECKING:
+    from svgf_cl.view.clip import Clip
+
+SIZE = "640x360"
+
+
+def view(
+    inputs: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="[FRAMES|SCENE]",
+            help="The EXR files of one shot, as svgf-cl denoise takes them; or a scene to render. By default a room "
+            "that needs no files.",
+        ),
+    ] = [],  # noqa: B006  # never changed; typer wants the default spelled here
+    reference: Annotated[
+        Path | None,
+        typer.Option(metavar="REF", help="References of the frames: a folder of pictures, or one picture."),
+    ] = None,
+    filter_: FilterName = DEFAULT.name,
+    set_: SettingTexts = [],  # noqa: B006
+    exposure: Exposure = 0.0,
+    port: Annotated[
+        int, typer.Option(metavar="N", min=0, max=65535, help="Port of the page on this machine [any free one].")
+    ] = 0,
+    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page, or only say where it is.")] = (
+        True
+    ),
+    size: Annotated[str, typer.Option(metavar="WxH", help=f"Of rendered frames [{SIZE}].")] = "",
+    frames: Annotated[
+        int | None,
+        typer.Option(metavar="N", min=1, max=MAX_FRAMES, help="Frames to render [as many as show the scene]."),
+    ] = None,
+    spp: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N", min=2, help="Also render references of a scene, with N samples per pixel; slow once."
+        ),
+    ] = None,
+    allow_gaps: AllowGaps = False,
+    format_: reading.Format = None,
+    maps: reading.Maps = [],  # noqa: B006
+    view_layer: reading.ViewLayer = None,
+    cameras: reading.Cameras = None,
+    still_camera: reading.StillCamera = False,
+    motion_scale: reading.MotionScale = 1.0,
+    motion_flip: reading.MotionFlip = "",
+) -> None:
+    """Play noisy, denoised and reference pictures beside each other in the browser, to see flicker.
+
+    Filter and settings are changed while it plays. Frames of files are denoised as svgf-cl denoise does. Scenes are
+    rendered at 1 sample per pixel while they are first played, and stay in memory. Only this machine can reach the
+    page. Ctrl-C ends it.
+
+    \b
+    Examples:
+      svgf-cl view
+      svgf-cl view cornell --spp 64
+      svgf-cl view 'shot/####.exr' --filter svgf
+      svgf-cl view out/demo/noisy --reference out/demo/reference --set taa=on
+    """
+    from svgf_cl.device.devices import default_device
+    from svgf_cl.view.player import Player
+    from svgf_cl.view.server import Server, Start
+
+    settings = parse_settings(filter_, set_)
+    how = reading.read_as(format_, maps, view_layer, cameras, still_camera, motion_scale, motion_flip)
+    if inputs and not any(map(is_scene, inputs)):
+        refuse_rendering({"--size": size, "--frames": frames, "--spp": spp})
+        clip: Clip = of_files(inputs, reference, how, allow_gaps=allow_gaps)
+    else:
+        refuse_files({"--reference": reference, "--allow-gaps": allow_gaps, "options of reading": how != ReadAs()})
+        clip = of_scene(inputs, parse_measured_size(size or SIZE), frames, spp)
+    device = default_device().name.strip()
+    server = Server(port, Player(clip, settings), Start(settings, exposure, device))
+    with server:
+        print(f"{clip.name}: {server.url} (Ctrl-C ends it)", flush=True)
+        if browser:
+            webbrowser.open(server.url)
+        server.serve_forever()
+
+
+def refuse_files(options: Mapping[str, object]) -> None:
+    """Raise `SvgfError` where an option of files was given though there are none."""
+    for name, value in options.items():
+        if value:
+            raise SvgfError(f"{name}: expected frames in files beside it, got a scene")
+
+
+def of_files(inputs: Sequence[str], reference: Path | None, how: ReadAs, *, allow_gaps: bool) -> Clip:
+    """The clip of a user's frames."""
+    from svgf_cl.compare.recorded import find_references
+    from svgf_cl.view.files import FilesClip
+
+    shot = Shot(find_frames(map(Path, inputs), allow_gaps=allow_gaps), how)
+    print(described(shot, shot.read(0)))
+    numbers = [number_of(path) for path in shot.paths]
+    return FilesClip(shot, find_references(reference, numbers) if reference else {})
+
+
+def of_scene(inputs: Sequence[str], shape: tuple[int, int], frames: int | None, spp: int | None) -> Clip:
+    """The clip of a scene; of the room where none is named."""
+    from svgf_cl.view.scenes import open_footage, room, scene
+
+    if not inputs:
+        refuse_spp(spp)
+        return room(shape, frames)
+    if len(inputs) > 1:
+        raise SvgfError(f"expected one scene, or frames, got {len(inputs)} things, of which some are scenes")
+    footage = open_footage(inputs[0], shape, frames, spp)
+    with progress_bar("references", footage.steps if spp else 0) as advance:
+        return scene(footage, has_references=spp is not None, advance=advance)
+
+
+def refuse_spp(spp: int | None) -> None:
+    """Raise `SvgfError` where samples are given for the room, whose references are exact."""
+    if spp is not None:
+        raise SvgfError("--spp: expected a scene to render beside it, got none; the room's references are exact")

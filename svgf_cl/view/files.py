@@ -1,0 +1,107 @@
+"""The clip of a shot's files, which are read ahead of what is played."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Collection, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+from threading import Lock
+
+from svgf_cl.errors import FileError
+from svgf_cl.frame import extent
+from svgf_cl.io.pictures import read_picture
+from svgf_cl.io.sequence import number_of
+from svgf_cl.io.shot import Shot, ShotFrame
+from svgf_cl.io.window import placed
+from svgf_cl.prefilter import Effort
+from svgf_cl.view.clip import Item, Picture
+
+MEMORY = 2**30  # bytes, for the frames that stay in memory
+AHEAD = 2  # frames that are read while one is filtered
+
+
+class FilesClip:
+    """Frames of any renderer as a clip.
+
+    Parameters
+    ----------
+    shot : Shot
+    references : mapping of int to Path
+        Pictures that frames converge to, by the frames' numbers.
+    """
+
+    prefilter: Effort = "auto"
+
+    def __init__(self, shot: Shot, references: Mapping[int, Path]) -> None:
+        self._shot, self._references = shot, references
+        self.shape = shot.shape
+        self.numbers = [number_of(path) for path in shot.paths]
+        self.cuts: Collection[int] = shot.cuts
+        self.has_references = bool(references)
+        self._pool = ThreadPoolExecutor(AHEAD)
+        self._lock = Lock()
+        self._read: OrderedDict[int, Future[Item]] = OrderedDict()  # the one that was asked for last is at the end
+
+    @property
+    def name(self) -> str:
+        """The folder's."""
+        return self._shot.paths[0].resolve().parent.name
+
+    @property
+    def note(self) -> str:
+        """Whose frames they are."""
+        return f"frames of {self._shot.reading.reader.title}"
+
+    def read(self, index: int) -> Item:
+        """One frame; the next ones are begun to be read.
+
+        Raises
+        ------
+        FileError
+            As of `Shot.read`; where a reference is damaged or of another size.
+        """
+        with self._lock:
+            wanted = [(index + step) % len(self.numbers) for step in range(1 + AHEAD)]
+            for each in reversed(wanted):
+                self._begin(each)
+            found = self._read[index]
+        try:
+            item = found.result()
+        except BaseException:
+            with self._lock:
+                self._read.pop(index, None)  # it may have been written anew when it is asked for again
+            raise
+        self._forget(item.nbytes)
+        return item
+
+    def beginning(self) -> tuple[Item, Item]:
+        """The first two frames, as of `Clip`."""
+        first, second = self._shot.beginning()
+        return Item(first.frame, first.lights), Item(second.frame, second.lights)
+
+    def _begin(self, index: int) -> None:
+        if index not in self._read:
+            self._read[index] = self._pool.submit(self._item, index)
+        self._read.move_to_end(index)
+
+    def _forget(self, nbytes: int) -> None:
+        """Keep those of the last `read`, and as many more as fit into `MEMORY` if each takes so many bytes."""
+        with self._lock:
+            while len(self._read) > max(1 + AHEAD, MEMORY // nbytes):
+                self._read.popitem(last=False)
+
+    def _item(self, index: int) -> Item:
+        source = self._shot.read(index)
+        return Item(source.frame, source.lights, self._reference(self.numbers[index], source))
+
+    def _reference(self, number: int, source: ShotFrame) -> Picture | None:
+        """The reference of a frame, on the window of the shot."""
+        path = self._references.get(number)
+        if path is None:
+            return None
+        picture, display = read_picture(path), source.image.windows.display
+        if picture.shape[:2] != (display.height, display.width):
+            expected, got = extent((display.height, display.width)), extent(picture.shape[:2])
+            raise FileError(f"{path}: expected {expected} pixels as {source.path} has, got {got}")
+        return placed(picture, display, self._shot.window, 0.0)

@@ -1,0 +1,121 @@
+"""`Player`: which frame is shown, and what the filter makes of it, forward, backward or from anywhere."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from svgf_cl.chunks import WARM_UP
+from svgf_cl.errors import FileError, SvgfError
+from svgf_cl.filters.filter import Filter
+from svgf_cl.shot_denoiser import Method, ShotDenoiser
+from svgf_cl.view.clip import Clip, Item, Picture
+
+MEMORY = 2**28  # bytes, for the pictures that can be stepped back to
+
+
+@dataclass(frozen=True, eq=False)
+class Filtered:
+    """What the filter made of a frame.
+
+    Parameters
+    ----------
+    picture : (H, W, 3) float32
+        Linear HDR radiance.
+    times : mapping of str to float
+        Milliseconds on the device, by pass.
+    """
+
+    picture: Picture
+    times: Mapping[str, float]
+
+
+class Player:
+    """Filters the frames of a clip as they are asked for.
+
+    The frame that follows on the last one is filtered with the past that is there. The first frame begins anew. A
+    picture that was made since then with the settings of now, and is still in memory, is shown as it was. Any other
+    frame takes a run-up: the filter begins anew up to `WARM_UP` frames before it.
+
+    Parameters
+    ----------
+    clip : Clip
+    settings : Filter
+        To begin with.
+    """
+
+    def __init__(self, clip: Clip, settings: Filter) -> None:
+        self.clip = clip
+        self._settings = settings
+        first, second = clip.beginning()
+        method = Method(settings, prefilter=clip.prefilter)
+        self._denoiser = ShotDenoiser(clip.shape, method, len(second.lights))
+        self._denoiser.settle(second.frame, second.lights, first.frame)
+        self._last: int | None = None  # the frame that the denoiser's past ends with
+        self._kept: OrderedDict[int, Filtered] = OrderedDict()
+
+    def show(self, index: int, settings: Filter) -> tuple[Item, Filtered]:
+        """A frame, and what the filter makes of it.
+
+        Parameters
+        ----------
+        index : int
+            From 0.
+        settings : Filter
+            Where they are others than before, the filter goes on with them as by `Denoiser.update`.
+
+        Raises
+        ------
+        SvgfError
+            The frame cannot be read or filtered. The next one that can be begins anew.
+        """
+        if not 0 <= index < len(self.clip.numbers):
+            raise SvgfError(f"index: expected 0 to {len(self.clip.numbers) - 1}, got {index}")
+        if settings != self._settings:
+            self._kept.clear()
+            self._denoiser.update(settings)
+            self._settings = settings
+        if index and index in self._kept:
+            return self.clip.read(index), self._kept[index]
+        for each in self._run_up(index):
+            self._skip(each)
+        item = self.clip.read(index)
+        return item, self._filter(index, item)
+
+    def _run_up(self, index: int) -> range:
+        """The frames to be filtered before this one; the past is forgotten where it is not that of this one."""
+        if index and self._last == index - 1:
+            return range(0)
+        self._forget()
+        begin = max((cut for cut in self.clip.cuts if cut <= index), default=0)
+        return range(max(begin, index - WARM_UP), index)
+
+    def _skip(self, index: int) -> None:
+        """Filter a frame of a run-up; behind one that cannot be read it begins anew."""
+        try:
+            item = self.clip.read(index)
+        except FileError:
+            self._forget()
+        else:
+            self._filter(index, item)
+
+    def _filter(self, index: int, item: Item) -> Filtered:
+        if index in self.clip.cuts:
+            self._denoiser.reset()
+        self._last = None  # until it is done
+        picture = self._denoiser.denoise(item.frame, item.lights).picture
+        made = Filtered(picture[..., :3], self._denoiser.profile())
+        self._last = index
+        self._keep(index, made)
+        return made
+
+    def _keep(self, index: int, made: Filtered) -> None:
+        self._kept[index] = made
+        while len(self._kept) > max(1, MEMORY // made.picture.nbytes):
+            self._kept.popitem(last=False)
+
+    def _forget(self) -> None:
+        self._denoiser.reset()
+        self._kept.clear()
+        self._last = None

@@ -1,0 +1,67 @@
+"""Clips of scenes: those that an installed package renders, and a room that needs no other package."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+import numpy as np
+
+from svgf_cl.compare.footage import Choice, Footage, opener
+from svgf_cl.frame import Shape
+from svgf_cl.io.synthetic import LIGHT, room_frames
+from svgf_cl.view.clip import Item, Picture, RenderedClip
+
+ROOM_FRAMES = 32
+ALL = 1_000_000  # frames, more than any scene has
+
+
+def room(shape: Shape, count: int | None) -> RenderedClip:
+    """The clip of a tiled room in even light; its references are exact."""
+    count = count or ROOM_FRAMES
+    frames = room_frames(shape, count)
+    items = (Item(frame, reference=np.float32(LIGHT) * frame.albedo) for frame in frames)
+    return RenderedClip("room", "1 sample per pixel, exact reference", shape, count, items, has_references=True)
+
+
+def open_footage(name: str, shape: Shape, count: int | None, spp: int | None) -> Footage:
+    """A scene by its name, folder or file, with rays through pixel centres.
+
+    Parameters
+    ----------
+    name : str
+    shape : (int, int)
+    count : int, optional
+        How many frames; by default as many as show the scene.
+    spp : int, optional
+        Samples per pixel of references; by default there are none.
+
+    Raises
+    ------
+    SvgfError
+        Where nothing renders scenes here, or there is no such scene.
+    """
+    return opener()(name, Choice(shape, count, ALL, spp or 2, jitter=False))
+
+
+def scene(footage: Footage, *, has_references: bool, advance: Callable[[], None]) -> RenderedClip:
+    """The clip of a scene; references are rendered here, as far as they are not kept from an earlier run.
+
+    `advance` is called ``footage.steps`` times then.
+    """
+    truths = dict(truths_of(footage, advance)) if has_references else {}
+    note = footage.note if has_references else "1 sample per pixel, rays go through pixel centres; no reference"
+    return RenderedClip(
+        footage.name, note, footage.shape, len(footage.numbers), items(footage, truths), has_references=has_references
+    )
+
+
+def truths_of(footage: Footage, advance: Callable[[], None]) -> Iterator[tuple[int, Picture]]:
+    """Number and reference of each frame: the mean of the two halves."""
+    for number, (first, second) in footage.truths(advance).items():
+        yield number, np.asarray(0.5 * (first + second), np.float32)
+
+
+def items(footage: Footage, truths: Mapping[int, Picture]) -> Iterator[Item]:
+    """The frames of a scene, rendered one by one."""
+    for number, frame in zip(footage.numbers, footage.frames(), strict=True):
+        yield Item(frame, reference=truths.get(number))
