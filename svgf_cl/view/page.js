@@ -1,0 +1,378 @@
+// The page's controls hold all that is chosen. One loop asks the server for one frame after the other and draws it.
+
+const by = id => document.getElementById(id);
+const stage = by("stage"), divider = by("divider");
+const transport = by("transport").elements, tools = by("tools").elements, filter = by("filter").elements;
+const figures = new Map([...stage.querySelectorAll("figure")].map(each => [each.dataset.picture, each]));
+const clip = await (await fetch("/clip")).json();
+const count = clip.numbers.length;
+
+// Settings: what each filter's controls say
+
+const settings = Object.fromEntries(Object.entries(clip.filters).map(([name, controls]) =>
+  [name, Object.fromEntries(controls.map(each => [each.name, each.default]))]));
+Object.assign(settings[clip.filter], clip.settings);
+
+function make(name, attributes = {}, ...content) {
+  const made = document.createElement(name);
+  Object.assign(made, attributes);
+  made.append(...content);
+  return made;
+}
+
+// A slider's way through numbers: even, or by equal factors where they span orders of magnitude.
+function scaleOf({ least, greatest, whole }) {
+  const round = value => whole ? Math.round(value) : Number(value.toPrecision(3));
+  const low = least > 0 ? least : greatest / 1e5; // the least above 0
+  if (whole || greatest <= 10 && least <= 0 || greatest < 100 * least) {
+    return { to: value => (value - least) / (greatest - least), from: share => round(least + share * (greatest - least)) };
+  }
+  const span = Math.log(greatest / low);
+  return {
+    to: value => value <= low ? 0 : Math.log(value / low) / span,
+    from: share => share <= 0 ? least : round(low * Math.exp(share * span)),
+  };
+}
+
+function numberControl(control, value, change) {
+  const { to, from } = scaleOf(control);
+  const field = make("input", { type: "number", min: control.least, max: control.greatest, step: control.whole ? 1 : "any", value, required: true });
+  const slider = make("input", { type: "range", min: 0, max: 1, step: "any", value: to(value), ariaLabel: control.name, tabIndex: -1 });
+  field.addEventListener("input", () => {
+    if (!field.checkValidity()) return;
+    slider.value = to(field.valueAsNumber);
+    change(field.valueAsNumber);
+  });
+  slider.addEventListener("input", () => {
+    field.value = from(slider.valueAsNumber);
+    change(field.valueAsNumber);
+  });
+  return [field, slider];
+}
+
+function choiceControl(control, value, change) {
+  const select = make("select", {}, ...control.words.map(word => make("option", { selected: word === value }, word)));
+  select.addEventListener("input", () => change(select.value));
+  return [select];
+}
+
+function switchControl(control, value, change) {
+  const box = make("input", { type: "checkbox", checked: value });
+  box.addEventListener("input", () => change(box.checked));
+  return [box];
+}
+
+const KINDS = { number: numberControl, choice: choiceControl, switch: switchControl };
+
+function settingRow(control) {
+  const values = settings[filter.filter.value];
+  const name = make("span", {}, control.name.replaceAll("_", " "), ...(control.unit ? [" ", make("small", {}, control.unit)] : []));
+  const row = make("label", { className: "setting", title: control.reason }, name);
+  row.dataset.name = control.name;
+  const mark = () => row.classList.toggle("changed", values[control.name] !== control.default);
+  row.append(...KINDS[control.kind](control, values[control.name], value => {
+    values[control.name] = value;
+    mark();
+    redraw();
+  }));
+  mark();
+  return row;
+}
+
+function showSettings() {
+  by("settings").replaceChildren(...clip.filters[filter.filter.value].map(settingRow));
+  redraw();
+}
+
+function useDefaults() {
+  for (const { name, default: value } of clip.filters[filter.filter.value]) settings[filter.filter.value][name] = value;
+  showSettings();
+}
+
+// Frames: the next one is asked for while this one is drawn
+
+let playing = true;
+let target = 0; // the frame that is to be shown
+let isStale = true; // whether it has to be asked for
+let ahead = null; // the frame that was asked for ahead
+let wake = () => {};
+
+function request(index) {
+  const name = filter.filter.value;
+  return JSON.stringify({ index, filter: name, settings: settings[name], exposure: tools.exposure.valueAsNumber || 0 });
+}
+
+async function ask(body) {
+  let answer;
+  try {
+    answer = await fetch("/frame", { method: "POST", body });
+  } catch {
+    throw new Error("svgf-cl view has ended; start it again and load this page again");
+  }
+  if (!answer.ok) throw new Error((await answer.json()).error);
+  return { about: JSON.parse(answer.headers.get("Frame")), pictures: await answer.arrayBuffer() };
+}
+
+function askAhead(index) {
+  const body = request(index);
+  ahead = { index, body, answer: ask(body) };
+  ahead.answer.catch(() => {}); // told when the frame's turn comes
+}
+
+// While it plays, a change of settings shows from the frame after the next.
+async function load(index) {
+  const asked = ahead;
+  ahead = null;
+  if (asked && asked.index === index && (playing || asked.body === request(index))) return asked.answer;
+  await asked?.answer.catch(() => {});
+  return ask(request(index));
+}
+
+const following = index => index + 1 < count ? index + 1 : transport.loop.checked ? 0 : null;
+const sleep = time => new Promise(done => setTimeout(done, time));
+let due = 0;
+
+// Wait until the next frame is due; one that is late does not make the following ones faster.
+async function pace() {
+  const now = performance.now();
+  if (due > now) await sleep(due - now);
+  due = Math.max(due, now) + 1000 / (transport.speed.checkValidity() ? transport.speed.valueAsNumber : 24);
+}
+
+async function play() {
+  for (;;) {
+    while (!playing && !isStale) await new Promise(done => { wake = done; });
+    isStale = false;
+    const index = target;
+    const waiting = setTimeout(() => document.body.classList.add("waiting"), 300);
+    try {
+      const frame = await load(index);
+      clearTimeout(waiting);
+      if (playing) {
+        await pace();
+        if (target === index && following(index) !== null) askAhead(following(index));
+      }
+      draw(frame);
+      complain("");
+    } catch (error) {
+      setPlaying(false);
+      complain(error.message);
+    }
+    clearTimeout(waiting);
+    document.body.classList.remove("waiting");
+    if (!playing && !isStale) target = shownIndex; // paused meanwhile
+    if (!playing || target !== index) continue;
+    if (following(index) === null) setPlaying(false);
+    else target = following(index);
+  }
+}
+
+function redraw() {
+  isStale = true;
+  wake();
+}
+
+function setPlaying(value) {
+  playing = value;
+  by("play").textContent = playing ? "Pause" : "Play";
+  drawn.length = 0;
+}
+
+function go(index) {
+  setPlaying(false);
+  target = within(index, 0, count - 1);
+  redraw();
+}
+
+function playOrPause() {
+  if (!playing && following(target) === null) target = 0;
+  else if (!playing) target = following(target);
+  else target = shownIndex;
+  setPlaying(!playing);
+  wake();
+}
+
+// What is drawn
+
+const drawn = []; // when the last frames were
+let shownIndex = 0;
+const fixed = (value, digits, unit) => value === undefined || value === null ? "" : `${value.toFixed(digits)}${unit}`;
+
+function draw({ about, pictures }) {
+  const { width, height } = clip, size = width * height * 4;
+  for (const [name, figure] of figures) {
+    const place = about.pictures.indexOf(name);
+    figure.classList.toggle("missing", place < 0);
+    if (place >= 0) {
+      const pixels = new Uint8ClampedArray(pictures, place * size, size);
+      figure.querySelector("canvas").getContext("2d", { alpha: false }).putImageData(new ImageData(pixels, width, height), 0, 0);
+    }
+    const error = fixed(about.temporal[name], 4, "");
+    const measures = [fixed(about.psnr[name], 1, " dB"), error && `temporal error ${error}`];
+    figure.querySelector("output").value = place < 0 ? "none of this frame" : measures.filter(Boolean).join(", ");
+  }
+  shownIndex = about.index;
+  transport.position.value = about.index;
+  by("frame").value = `frame ${clip.numbers[about.index]} (${about.index + 1} of ${count})`;
+  by("time").value = fixed(Object.values(about.times).reduce((sum, each) => sum + each, 0), 1, " ms");
+  by("times").replaceChildren(...Object.entries(about.times).map(([name, time]) =>
+    make("tr", {}, make("td", {}, name), make("td", {}, fixed(time, 2, " ms")))));
+  drawn.push(performance.now());
+  if (drawn.length > 24) drawn.shift();
+  by("rate").value = drawn.length < 2 ? "" : fixed(1000 * (drawn.length - 1) / (drawn.at(-1) - drawn[0]), 1, " fps");
+}
+
+function complain(message) {
+  by("complaint").hidden = !message;
+  by("complaint").textContent = message;
+}
+
+// One view of all pictures: pixels of the screen for one of the picture, none to fit; and what is in the middle
+
+const view = { zoom: 0, x: 0.5, y: 0.5 };
+const pane = () => [...stage.querySelectorAll(".pane")].find(each => each.clientWidth);
+const fitting = box => Math.min(box.clientWidth / clip.width, box.clientHeight / clip.height);
+const scaled = box => view.zoom ? view.zoom / devicePixelRatio : fitting(box);
+
+function look() {
+  const box = pane();
+  if (!box) return;
+  const scale = scaled(box);
+  for (const [at, whole, room] of [["x", clip.width, box.clientWidth], ["y", clip.height, box.clientHeight]]) {
+    const half = room / (whole * scale) / 2;
+    view[at] = half >= 0.5 ? 0.5 : within(view[at], half, 1 - half);
+  }
+  const snapped = value => Math.round(value * devicePixelRatio) / devicePixelRatio;
+  stage.style.setProperty("--scale", scale);
+  stage.style.setProperty("--left", snapped(box.clientWidth / 2 - view.x * clip.width * scale));
+  stage.style.setProperty("--top", snapped(box.clientHeight / 2 - view.y * clip.height * scale));
+  // Pixels are shown as they are where they are enlarged; picking some to be shown small would be noise.
+  stage.classList.toggle("crisp", scale * devicePixelRatio >= 1);
+  by("scale").value = `${Math.round(100 * scale * devicePixelRatio)} %`;
+  for (const each of tools.zoom) each.checked = Number(each.value) === view.zoom;
+}
+
+function zoomBy(factor, at = { x: 0.5, y: 0.5 }) {
+  const box = pane(), before = scaled(box);
+  view.zoom = within(before * devicePixelRatio * factor, 1 / 16, 64);
+  const after = scaled(box);
+  view.x += (at.x - 0.5) * box.clientWidth / clip.width * (1 / before - 1 / after);
+  view.y += (at.y - 0.5) * box.clientHeight / clip.height * (1 / before - 1 / after);
+  look();
+}
+
+function panBy(x, y) {
+  const box = pane(), scale = scaled(box);
+  view.x -= x * box.clientWidth / (clip.width * scale);
+  view.y -= y * box.clientHeight / (clip.height * scale);
+  look();
+}
+
+function point(at) {
+  by("pixel").value = "";
+  if (!at) return;
+  const box = pane(), scale = scaled(box);
+  const x = Math.floor(view.x * clip.width + (at.x - 0.5) * box.clientWidth / scale);
+  const y = Math.floor(view.y * clip.height + (at.y - 0.5) * box.clientHeight / scale);
+  if (x >= 0 && x < clip.width && y >= 0 && y < clip.height) by("pixel").value = `pixel ${x}, ${y}`;
+}
+
+// Which pictures, and how they lie
+
+function arrange() {
+  const slider = tools.layout.value === "slider";
+  for (const [name, figure] of figures) {
+    const left = slider && tools.left.value === name, right = slider && !left && tools.right.value === name;
+    figure.classList.toggle("left", left);
+    figure.classList.toggle("right", right);
+    const box = [...tools.shown].find(each => each.value === name);
+    figure.hidden = slider ? !left && !right : !box.checked || box.disabled;
+  }
+  by("pictures").hidden = slider;
+  for (const pick of document.querySelectorAll(".side")) pick.hidden = !slider;
+  stage.classList.toggle("slider", slider);
+  stage.style.setProperty("--columns", Math.max(1, stage.querySelectorAll("figure:not([hidden])").length));
+  stage.style.setProperty("--split", divider.value);
+  look();
+}
+
+function withoutReferences() {
+  for (const each of tools.shown) each.disabled = each.value === "reference";
+  for (const side of [tools.left, tools.right]) side.options[2].disabled = true;
+  by("pictures").querySelector("[value=reference]").parentElement.hidden = true;
+}
+
+// Keys
+
+function toggle(name) {
+  [...tools.shown].find(each => each.value === name && !each.disabled)?.click();
+}
+
+function expose(stops) {
+  tools.exposure.value = within((tools.exposure.valueAsNumber || 0) + stops, -64, 64);
+  redraw();
+}
+
+function nextFilter() {
+  filter.filter.selectedIndex = (filter.filter.selectedIndex + 1) % filter.filter.length;
+  showSettings();
+}
+
+function fit() {
+  view.zoom = 0;
+  look();
+}
+
+const KEYS = {
+  " ": playOrPause,
+  Home: () => go(0),
+  ArrowLeft: () => go((playing ? shownIndex : target) - 1),
+  ArrowRight: () => go((playing ? shownIndex : target) + 1),
+  1: () => toggle("noisy"),
+  2: () => toggle("denoised"),
+  3: () => toggle("reference"),
+  w: () => [...tools.layout].find(each => !each.checked).click(),
+  "+": () => zoomBy(Math.SQRT2),
+  "=": () => zoomBy(Math.SQRT2), // + without shift
+  "-": () => zoomBy(Math.SQRT1_2),
+  0: fit,
+  "[": () => expose(-0.5),
+  "]": () => expose(0.5),
+  f: nextFilter,
+};
+
+function press(event) {
+  const act = KEYS[event.key];
+  if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
+  if (event.target.matches("select, input:not([type=checkbox])")) return; // keys are theirs
+  if (event.key === " " && event.target.matches("button, input")) return;
+  event.preventDefault();
+  act();
+}
+
+by("name").textContent = clip.name;
+by("note").textContent = clip.note;
+by("device").textContent = clip.device;
+document.title = `${clip.name} - svgf-cl view`;
+for (const canvas of stage.querySelectorAll("canvas")) Object.assign(canvas, { width: clip.width, height: clip.height });
+filter.filter.append(...Object.keys(clip.filters).map(name => make("option", { selected: name === clip.filter }, name)));
+tools.exposure.value = clip.exposure;
+transport.position.max = count - 1;
+if (!clip.has_references) withoutReferences();
+showSettings();
+arrange();
+gestures(stage, { zoomBy, panBy, point, isWhole: () => false });
+filter.filter.addEventListener("input", showSettings);
+by("defaults").addEventListener("click", useDefaults);
+by("transport").addEventListener("click", event => KEYS[event.target.closest("button")?.dataset.key]?.());
+transport.position.addEventListener("input", () => go(transport.position.valueAsNumber));
+tools.exposure.addEventListener("input", redraw);
+by("tools").addEventListener("input", event => {
+  if (event.target.name === "zoom") view.zoom = Number(tools.zoom.value);
+  arrange();
+});
+for (const form of document.forms) form.addEventListener("submit", event => event.preventDefault());
+divider.addEventListener("input", () => stage.style.setProperty("--split", divider.value));
+addEventListener("keydown", press);
+new ResizeObserver(look).observe(stage);
+play();
