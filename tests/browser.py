@@ -54,10 +54,10 @@ class Tab:
         result: dict[str, Any] = answer["result"]
         return result
 
-    def open(self, page: Path, width: int = 1400, height: int = 1000) -> None:
-        """Open a page in a window of that size, and wait until all of it is there."""
+    def open(self, page: Path | str, width: int = 1400, height: int = 1000) -> None:
+        """Open a page, a file or an address, in a window of that size, and wait until all of it is there."""
         self.resize(width, height)
-        self.call("Page.navigate", url=page.as_uri())
+        self.call("Page.navigate", url=page.as_uri() if isinstance(page, Path) else page)
         while self._read().get("method") != "Page.loadEventFired":
             pass
 

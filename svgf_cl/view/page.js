@@ -279,6 +279,8 @@ function point(at) {
 
 // Which pictures, and how they lie
 
+const CAPTION = 24; // pixels
+
 function arrange() {
   const slider = tools.layout.value === "slider";
   for (const [name, figure] of figures) {
@@ -291,8 +293,18 @@ function arrange() {
   by("pictures").hidden = slider;
   for (const pick of document.querySelectorAll(".side")) pick.hidden = !slider;
   stage.classList.toggle("slider", slider);
-  stage.style.setProperty("--columns", Math.max(1, stage.querySelectorAll("figure:not([hidden])").length));
   stage.style.setProperty("--split", divider.value);
+  fill();
+}
+
+// Put the pictures into as many columns as let them be largest.
+function fill() {
+  const number = stage.querySelectorAll("figure:not([hidden])").length;
+  const size = columns => Math.min(
+    stage.clientWidth / columns / clip.width, (stage.clientHeight / Math.ceil(number / columns) - CAPTION) / clip.height);
+  const columns = Array.from({ length: number }, (_, index) => index + 1);
+  const best = columns.reduce((best, each) => size(each) > size(best) ? each : best, 1);
+  stage.style.setProperty("--columns", stage.classList.contains("slider") ? 1 : best);
   look();
 }
 
@@ -374,5 +386,5 @@ by("tools").addEventListener("input", event => {
 for (const form of document.forms) form.addEventListener("submit", event => event.preventDefault());
 divider.addEventListener("input", () => stage.style.setProperty("--split", divider.value));
 addEventListener("keydown", press);
-new ResizeObserver(look).observe(stage);
+new ResizeObserver(fill).observe(stage);
 play();

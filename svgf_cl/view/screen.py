@@ -22,8 +22,10 @@ DROPPED = 12
 @lru_cache(maxsize=8)
 def table(exposure: float) -> Bytes:
     """What `to_bytes` makes of floats, by their upper bits; taken in the middle of those that share them."""
-    keys = np.arange(2 ** (32 - DROPPED), dtype=np.uint32)
-    return to_bytes(((keys << DROPPED) + (1 << (DROPPED - 1))).view(np.float32), exposure)
+    first = (np.arange(2 ** (32 - DROPPED), dtype=np.uint32) << DROPPED).view(np.float32)
+    middle = (first.view(np.uint32) + (1 << (DROPPED - 1))).view(np.float32)
+    with np.errstate(invalid="ignore"):  # some are signalling NaN
+        return to_bytes(np.where(np.isinf(first), first, middle), exposure)
 
 
 def fast_bytes(picture: Picture, exposure: float) -> Bytes:
