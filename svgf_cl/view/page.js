@@ -154,13 +154,13 @@ async function play() {
       }
       draw(frame);
       complain("");
+      if (!playing && !isStale) target = index; // paused meanwhile
     } catch (error) {
       setPlaying(false);
       complain(error.message);
     }
     clearTimeout(waiting);
     document.body.classList.remove("waiting");
-    if (!playing && !isStale) target = shownIndex; // paused meanwhile
     if (!playing || target !== index) continue;
     if (following(index) === null) setPlaying(false);
     else target = following(index);

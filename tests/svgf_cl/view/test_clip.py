@@ -58,7 +58,7 @@ def test_more_frames_than_memory_has_room_for_are_refused(monkeypatch: pytest.Mo
     monkeypatch.setattr(module, "MEMORY", 3 * kept.nbytes)
     assert clip_of(iter(items(3)), 3).read(2)
     with pytest.raises(
-        SvgfError, match="--frames: expected at most 3 frames of 9x7 pixels, .* got 4; .* svgf-cl render"
+        SvgfError, match=r"--frames: expected at most 3 frames of 9x7 pixels, .* got 4; .* svgf-cl render"
     ):
         clip_of(iter(items(4)), 4).read(0)
 
