@@ -6,9 +6,12 @@ request   path      answer
 GET       /         the page; its parts lie beside it (`FILES`)
 GET       /clip     what is played, the filters with their settings, and what to begin with; JSON
 POST      /frame    ``{"index": 3, "filter": "kalman", "settings": {}, "exposure": 0.0}`` to the pictures of a frame:
-                    noisy, denoised, and reference where there is one, each 8-bit RGBA, row by row from the top; the
+                    noisy, denoised, and reference where there is one, each 8-bit RGB, row by row from the top; the
                     header ``Frame`` has times and measures as JSON
 ========  ========  ================================================================================================
+
+Pictures are not compressed: of 1280x720 pixels, three raw ones are shown in 0.2 s on a busy CPU with two cores, as PNG
+of the lowest level in 0.8 s, as lossless WebP in 0.7 s.
 
 What is wrong with a request is answered as ``{"error": "..."}`` with status 400.
 """
@@ -25,8 +28,6 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib import resources
 from threading import Lock
 from typing import Any
-
-import numpy as np
 
 from svgf_cl.errors import SvgfError, shown
 from svgf_cl.filters.filter import Filter
@@ -167,13 +168,6 @@ def parsed(body: bytes) -> object:
         raise SvgfError(f"expected JSON, got {shown(body)} ({error})") from error
 
 
-def rgba(picture: Bytes) -> memoryview:
-    """A picture (H, W, 3) with an opaque alpha, as a canvas takes it."""
-    made = np.full((*picture.shape[:2], 4), 255, np.uint8)
-    made[..., :3] = picture
-    return made.data
-
-
 class Handler(BaseHTTPRequestHandler):
     """Answers one connection."""
 
@@ -205,7 +199,7 @@ class Handler(BaseHTTPRequestHandler):
         except (SvgfError, MemoryError) as error:
             self._refuse(HTTPStatus.BAD_REQUEST, str(error))
         else:
-            self._send("application/octet-stream", *map(rgba, pictures), Frame=json.dumps(about))
+            self._send("application/octet-stream", *(picture.data for picture in pictures), Frame=json.dumps(about))
 
     def log_message(self, format: str, *args: Any) -> None:
         """Say nothing: there is a line for every frame."""
