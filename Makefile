@@ -41,6 +41,7 @@ gpu: $(READY)  ## test, tune and time a GPU in under ten minutes; report in out/
 docs: demo implementations  ## make docs/accuracy.md, docs/scene_description.md, the tables of docs/algorithm.md and docs/gpu.md and all pictures again
 	$(BIN)/python -m benchmarks.accuracy_page docs/accuracy.md
 	$(BIN)/python scripts/picture.py
+	$(BIN)/python -m scripts.view_picture
 	$(BIN)/python scripts/scene_description.py
 	$(BIN)/python scripts/pass_table.py
 	$(BIN)/python -m benchmarks.gpu.roofline docs/gpu.md

@@ -8,14 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from svgf_cl import Kalman
 from svgf_cl.errors import FileError
 from svgf_cl.io.frames import frame_path, write_frame
-from svgf_cl.io.pictures import write_picture
+from svgf_cl.io.pictures import read_picture, write_picture
 from svgf_cl.io.sequence import find_frames
 from svgf_cl.io.shot import Shot
 from svgf_cl.io.synthetic import room_frames
 from svgf_cl.view import files as module
 from svgf_cl.view.files import FilesClip
+from svgf_cl.view.player import Player
+from tests.command_line import run
+from tests.renderers import BLENDER_HEADER, blender, moments, own, written
 from tests.svgf_cl.view.clips import SHAPE
 
 COUNT = 6
@@ -44,6 +48,21 @@ def test_frames_are_those_of_the_files(rendered: Path) -> None:
     for index, frame in enumerate(room_frames(SHAPE, COUNT)):
         assert np.array_equal(clip.read(index).noisy, frame.color)
     assert np.array_equal(clip.beginning()[1].noisy, clip.read(1).noisy)
+
+
+@pytest.mark.parametrize("renderer", ["blender", "own"])
+def test_pictures_are_those_that_denoise_writes(renderer: str, tmp_path: Path) -> None:
+    if renderer == "blender":
+        folder = written(tmp_path / renderer, {at.number: blender(at) for at in moments()}, BLENDER_HEADER)
+    else:
+        folder = written(tmp_path / renderer, {at.number: own(at) for at in moments()})
+    assert run("denoise", folder, "-o", tmp_path / "out", "--plain") == 0
+    clip = clip_of(folder)
+    player = Player(clip, Kalman())
+    for index, path in enumerate(find_frames([tmp_path / "out"])):
+        item, made = player.show(index, Kalman())
+        assert item.lights, "light passes are filtered one by one"
+        assert np.array_equal(made.picture, read_picture(path))
 
 
 def test_the_next_frames_are_read_ahead_round_the_end(rendered: Path, monkeypatch: pytest.MonkeyPatch) -> None:

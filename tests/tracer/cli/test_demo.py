@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
+from svgf_cl.view.server import Server
+from svgf_cl_tracer.cli.demo import viewing
+from svgf_cl_tracer.demo import SETTINGS
 from tests.command_line import run
 
 
@@ -17,6 +22,21 @@ def test_demo_prints_gain_times_and_files(tmp_path: Path, capsys: pytest.Capture
         assert words in said.out
     assert said.err == "", "no progress bar where stderr is no terminal"
     assert (tmp_path / "still.0001.png").exists()
+    told = said.out.splitlines()[-1]
+    assert told == f"to see it in motion: {shlex.join(viewing(tmp_path))}"
+
+
+def test_the_command_that_the_demo_ends_with_plays_its_frames(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder, told = tmp_path / "a folder", []
+    monkeypatch.setattr(Server, "serve_forever", lambda server: told.append(server.clip()))
+    assert run("demo", "--frames", "2", "--size", "32x18", "--reference-spp", "4", "-o", folder) == 0
+    command = shlex.split(capsys.readouterr().out.splitlines()[-1].partition(": ")[2])
+    assert run(*command[1:], "--no-browser") == 0
+    (clip,) = told
+    assert (clip["name"], clip["numbers"], clip["has_references"]) == ("noisy", [0, 1], True)
+    assert clip["settings"] == asdict(SETTINGS)
 
 
 def test_a_demo_too_small_to_be_measured(tmp_path: Path, refused) -> None:

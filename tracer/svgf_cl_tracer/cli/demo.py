@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Annotated
@@ -54,6 +55,13 @@ def demo(
         output,
         ["preview.webp", *(f"still.{n:04d}.png" for n in run.compared), "noisy", "filtered", "denoised", "reference"],
     )
+    print(f"to see it in motion: {shlex.join(viewing(output))}")
+
+
+def viewing(folder: Path) -> list[str]:
+    """The command that plays what was rendered to a folder."""
+    reference = str(folder / "reference")
+    return ["svgf-cl", "view", str(folder / "noisy"), "--reference", reference, "--set", "taa=on"]
 
 
 def show_gain(noisy: Mapping[int, Metrics], svgf: Mapping[int, Metrics], antialiased: Mapping[int, Metrics]) -> None:

@@ -1,0 +1,67 @@
+"""Writes docs/view.webp, the picture of `svgf-cl view`, from what `svgf-cl demo` left in out/demo: needs Chromium."""
+
+from __future__ import annotations
+
+import base64
+import io
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import IO
+
+import numpy as np
+from PIL import Image
+
+from svgf_cl.io.display import write_image
+from svgf_cl_tracer.cli.demo import viewing
+from tests.browser import browser
+
+DEMO = Path("out/demo")
+TARGET = Path("docs/view.webp")
+FRAME = 15  # which has a reference
+SIZE = 1500, 900
+
+# Go to the frame, and wait until it is drawn.
+STOP_AT = f"""new Promise(done => {{
+  const number = document.querySelector("#frame");
+  const wait = () => number.value.startsWith("frame {FRAME} ") ? done() : requestAnimationFrame(wait);
+  const position = document.querySelector("[name=position]");
+  position.value = {FRAME};
+  position.dispatchEvent(new Event("input", {{ bubbles: true }}));
+  wait();
+}})"""
+
+
+def main() -> None:
+    """Let the page show a frame, and write what is seen."""
+    with served() as url, TemporaryDirectory() as profile, browser(Path(profile)) as tab:
+        tab.open(url, *SIZE)
+        tab.ask(STOP_AT)
+        tab.settle()
+        shot = base64.b64decode(tab.call("Page.captureScreenshot", format="png")["data"])
+    write_image(TARGET, np.asarray(Image.open(io.BytesIO(shot)).convert("RGB")))
+    print(f"{TARGET}: {TARGET.stat().st_size / 1000:.0f} kB")
+
+
+@contextmanager
+def served() -> Iterator[str]:
+    """The address of the page while it is served."""
+    command = [sys.executable, "-m", "svgf_cl", *viewing(DEMO)[1:], "--no-browser"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        try:
+            yield address(process.stdout)
+        finally:
+            process.terminate()
+
+
+def address(said: IO[str]) -> str:
+    """The address in the line that names it."""
+    return next(word for line in said for word in line.split() if word.startswith("http://"))
+
+
+if __name__ == "__main__":
+    main()
