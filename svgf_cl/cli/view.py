@@ -95,19 +95,22 @@ def view(
 
     settings = parse_settings(filter_, set_)
     how = reading.read_as(format_, maps, view_layer, cameras, still_camera, motion_scale, motion_flip)
-    if inputs and not any(map(is_scene, inputs)):
+    is_files = bool(inputs) and not any(map(is_scene, inputs))
+    if is_files:
         refuse_rendering({"--size": size, "--frames": frames, "--spp": spp})
-        clip: Clip = of_files(inputs, reference, how, allow_gaps=allow_gaps)
     else:
         refuse_files({"--reference": reference, "--allow-gaps": allow_gaps, "options of reading": how != ReadAs()})
-        clip = of_scene(inputs, parse_measured_size(size or SIZE), frames, spp)
-    device = default_device().name.strip()
-    server = Server(port, Player(clip, settings), Start(settings, exposure, device))
-    with server:
+    shape = parse_measured_size(size or SIZE)
+    with Server(port) as server:  # a used port is told before anything is rendered
+        if is_files:
+            clip: Clip = of_files(inputs, reference, how, allow_gaps=allow_gaps)
+        else:
+            clip = of_scene(inputs, shape, frames, spp)
+        player = Player(clip, settings)
         print(f"{clip.name}: {server.url} (Ctrl-C ends it)", flush=True)
         if browser:
             webbrowser.open(server.url)
-        server.serve_forever()
+        server.play(player, Start(settings, exposure, default_device().name.strip()))
 
 
 def refuse_files(options: Mapping[str, object]) -> None:
@@ -138,6 +141,7 @@ def of_scene(inputs: Sequence[str], shape: tuple[int, int], frames: int | None, 
     if len(inputs) > 1:
         raise SvgfError(f"expected one scene, or frames, got {len(inputs)} things, of which some are scenes")
     footage = open_footage(inputs[0], shape, frames, spp)
+    typer.echo(f"{footage.name}: the first frames are rendered before the page is there", err=True)
     with progress_bar("references", footage.steps if spp else 0) as advance:
         return scene(footage, has_references=spp is not None, advance=advance)
 

@@ -93,6 +93,7 @@ function useDefaults() {
 
 let playing = true;
 let target = 0; // the frame that is to be shown
+let way = 1; // 1 forward, -1 backward
 let isStale = true; // whether it has to be asked for
 let ahead = null; // the frame that was asked for ahead
 let wake = () => {};
@@ -128,7 +129,15 @@ async function load(index) {
   return ask(request(index));
 }
 
-const following = index => index + 1 < count ? index + 1 : transport.loop.checked ? 0 : null;
+// The frame after this one, and the way on from there; nothing at the end.
+function following(index, way) {
+  const repeat = transport.repeat.value;
+  const next = index + (repeat === "ping-pong" ? way : 1);
+  if (next >= 0 && next < count) return { index: next, way: next - index };
+  if (repeat === "once") return null;
+  return repeat === "ping-pong" && count > 1 ? { index: index - way, way: -way } : { index: 0, way: 1 };
+}
+
 const sleep = time => new Promise(done => setTimeout(done, time));
 let due = 0;
 
@@ -150,7 +159,8 @@ async function play() {
       clearTimeout(waiting);
       if (playing) {
         await pace();
-        if (target === index && following(index) !== null) askAhead(following(index));
+        const next = following(index, way);
+        if (target === index && next) askAhead(next.index);
       }
       draw(frame);
       complain("");
@@ -162,9 +172,14 @@ async function play() {
     clearTimeout(waiting);
     document.body.classList.remove("waiting");
     if (!playing || target !== index) continue;
-    if (following(index) === null) setPlaying(false);
-    else target = following(index);
+    advance();
   }
+}
+
+function advance() {
+  const next = following(target, way);
+  if (next) ({ index: target, way } = next);
+  else setPlaying(false);
 }
 
 function redraw() {
@@ -180,15 +195,16 @@ function setPlaying(value) {
 
 function go(index) {
   setPlaying(false);
+  way = 1;
   target = within(index, 0, count - 1);
   redraw();
 }
 
 function playOrPause() {
-  if (!playing && following(target) === null) target = 0;
-  else if (!playing) target = following(target);
-  else target = shownIndex;
   setPlaying(!playing);
+  if (!playing) target = shownIndex;
+  else if (following(target, way)) advance();
+  else target = 0;
   wake();
 }
 

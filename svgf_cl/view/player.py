@@ -13,6 +13,7 @@ from svgf_cl.shot_denoiser import Method, ShotDenoiser
 from svgf_cl.view.clip import Clip, Item, Picture
 
 MEMORY = 2**28  # bytes, for the pictures that can be stepped back to
+SETTLED = WARM_UP // 2  # frames of past without which no picture of a run-up is shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +37,8 @@ class Player:
 
     The frame that follows on the last one is filtered with the past that is there. The first frame begins anew. A
     picture that was made since then with the settings of now, and is still in memory, is shown as it was. Any other
-    frame takes a run-up: the filter begins anew up to `WARM_UP` frames before it.
+    frame takes a run-up: the filter begins anew up to `WARM_UP` frames before it. Pictures of a run-up are kept, too,
+    but for those whose past is short.
 
     Parameters
     ----------
@@ -78,8 +80,9 @@ class Player:
             self._settings = settings
         if index and index in self._kept:
             return self.clip.read(index), self._kept[index]
-        for each in self._run_up(index):
-            self._skip(each)
+        run_up = self._run_up(index)
+        for each in run_up:
+            self._skip(each, is_kept=each >= run_up.start + SETTLED or self._begins(run_up.start))
         item = self.clip.read(index)
         return item, self._filter(index, item)
 
@@ -91,14 +94,20 @@ class Player:
         begin = max((cut for cut in self.clip.cuts if cut <= index), default=0)
         return range(max(begin, index - WARM_UP), index)
 
-    def _skip(self, index: int) -> None:
+    def _begins(self, index: int) -> bool:
+        """Whether a frame has no past in the clip."""
+        return index == 0 or index in self.clip.cuts
+
+    def _skip(self, index: int, *, is_kept: bool) -> None:
         """Filter a frame of a run-up; behind one that cannot be read it begins anew."""
         try:
             item = self.clip.read(index)
         except FileError:
             self._forget()
-        else:
-            self._filter(index, item)
+            return
+        self._filter(index, item)
+        if not is_kept:
+            self._kept.pop(index, None)
 
     def _filter(self, index: int, item: Item) -> Filtered:
         if index in self.clip.cuts:

@@ -15,6 +15,8 @@ from svgf_cl.view.player import Filtered
 
 NOISY, DENOISED, REFERENCE = "noisy", "denoised", "reference"
 
+NOTHING: tuple[int, float, Mapping[str, Picture]] = (-2, 0.0, {})  # was shown before: no frame's neighbour
+
 # Floats are looked up by their upper bits: sign, exponent and 11 bits of mantissa.
 DROPPED = 12
 
@@ -52,10 +54,10 @@ class View:
 
 
 class Screen:
-    """Shows frames one after the other; what follows on the frame before has a temporal error."""
+    """Shows frames one after the other; the neighbour of the frame before has a temporal error."""
 
     def __init__(self) -> None:
-        self._last: tuple[int, float, Mapping[str, Picture]] = (-2, 0.0, {})
+        self._last: tuple[int, float, Mapping[str, Picture]] = NOTHING
 
     def show(self, index: int, item: Item, made: Filtered, exposure: float) -> View:
         """Show a frame, brightened by so many stops; measures are of what is shown (`svgf_cl.compare.metrics`)."""
@@ -64,13 +66,13 @@ class Screen:
             light[REFERENCE] = item.reference
         pictures = {name: fast_bytes(picture, exposure) for name, picture in light.items()}
         if item.reference is None:
-            self._last = (-2, 0.0, {})
+            self._last = NOTHING
             return View(pictures, {}, {})
         shown = {name: picture.astype(np.float32) / np.float32(255) for name, picture in pictures.items()}
         errors = {name: psnr(shown[name], shown[REFERENCE]) for name in (NOISY, DENOISED)}
         last, brightness, before = self._last
         temporal: dict[str, float] = {}
-        if (last, brightness) == (index - 1, exposure):
+        if abs(index - last) == 1 and brightness == exposure:
             wanted = before[REFERENCE], shown[REFERENCE]
             temporal = {n: temporal_error((before[n], shown[n]), wanted) for n in (NOISY, DENOISED)}
         self._last = (index, exposure, shown)

@@ -75,14 +75,12 @@ class Start:
 
 
 class Server(ThreadingHTTPServer):
-    """Answers the page of one player.
+    """Answers the page of one player, from `play` on.
 
     Parameters
     ----------
     port : int
-        0 for any that is free.
-    player : Player
-    start : Start
+        0 for any that is free. It is taken at once.
 
     Raises
     ------
@@ -92,13 +90,16 @@ class Server(ThreadingHTTPServer):
 
     daemon_threads = True
 
-    def __init__(self, port: int, player: Player, start: Start) -> None:
-        self._player, self._start, self._screen = player, start, Screen()
-        self._lock = Lock()
+    def __init__(self, port: int) -> None:
         try:
             super().__init__((HOST, port), Handler)
         except OSError as error:
             raise SvgfError(f"--port: expected a free port, got {port} ({error.strerror}); choose another") from error
+
+    def play(self, player: Player, start: Start, poll: float = 0.5) -> None:
+        """Answer until `shutdown`, of which it learns within `poll` seconds."""
+        self._player, self._start, self._screen, self._lock = player, start, Screen(), Lock()
+        self.serve_forever(poll)
 
     @property
     def url(self) -> str:

@@ -25,7 +25,7 @@ Played = Callable[..., dict[str, Any]]
 def played(monkeypatch: pytest.MonkeyPatch) -> Played:
     """What the page would be told, of a command line; nothing is served."""
     told: list[dict[str, Any]] = []
-    monkeypatch.setattr(Server, "serve_forever", lambda server: told.append(server.clip()))
+    monkeypatch.setattr(Server, "serve_forever", lambda server, poll: told.append(server.clip()))
     monkeypatch.setattr(module.webbrowser, "open", lambda url: told.append({"url": url}))
 
     def play(*argv: str | Path) -> dict[str, Any]:
@@ -57,7 +57,7 @@ def test_without_anything_it_plays_the_room(played: Played) -> None:
 
 def test_the_browser_is_opened(monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[str] = []
-    monkeypatch.setattr(Server, "serve_forever", lambda server: opened.append(server.url))
+    monkeypatch.setattr(Server, "serve_forever", lambda server, poll: opened.append(server.url))
     monkeypatch.setattr(module.webbrowser, "open", opened.append)
     assert run("view", "--size", "32x18") == 0
     assert opened[0] == opened[1]

@@ -39,15 +39,12 @@ class Listed:
         return Item(self.frames[0]), Item(self.frames[1])
 
 
-def started(settings: Kalman | None = None) -> Start:
-    return Start(settings or Kalman(), 0.0, "a device")
-
-
 @contextmanager
 def serving(clip: Clip | None = None, port: int = 0) -> Iterator[Server]:
     """A server of a clip, by default the room, that answers while this lasts."""
-    with Server(port, Player(clip or room(SHAPE, 4), Kalman()), started()) as server:
-        thread = Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02})
+    player = Player(clip or room(SHAPE, 4), Kalman())
+    with Server(port) as server:
+        thread = Thread(target=server.play, args=(player, Start(Kalman(), 0.0, "a device"), 0.02))
         thread.start()
         try:
             yield server

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -207,12 +208,31 @@ def test_two_pictures_lie_on_each_other_with_a_divider(tab: Tab) -> None:
     assert "1%" in tab.ask(edge)
 
 
+def repeat(tab: Tab, how: str) -> None:
+    tab.ask(f"document.querySelector('[name=repeat]').value = '{how}'")
+
+
 def test_without_loop_it_stops_at_the_end_and_begins_anew(tab: Tab) -> None:
-    tab.ask("document.querySelector('[name=loop]').click()")
+    repeat(tab, "once")
     until(tab, "document.querySelector('#play').textContent === 'Play'")
     assert frame(tab) == 5
     tab.press(" ")
     until(tab, "document.querySelector('#frame').value.startsWith('frame 2 ')")
+
+
+def test_ping_pong_plays_backward_from_the_end(tab: Tab) -> None:
+    repeat(tab, "ping-pong")
+    numbers = tab.ask(
+        """new Promise(done => {
+          const number = document.querySelector('#frame'), seen = [];
+          new MutationObserver(() => seen.push(number.value.split(' ')[1]) > 24 && done(seen))
+            .observe(number, { childList: true });
+        })"""
+    )
+    steps = [int(after) - int(before) for before, after in pairwise(numbers)]
+    assert set(steps) == {-1, 1}
+    turns = [number for number, (before, after) in zip(numbers[1:], pairwise(steps), strict=False) if before != after]
+    assert set(turns) == {"0", "5"}
 
 
 def test_a_damaged_frame_stops_it_with_a_message(chromium: Tab) -> None:

@@ -25,6 +25,7 @@ def frames() -> list[Frame]:
 @pytest.fixture(autouse=True)
 def short_run_up(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "WARM_UP", 3)
+    monkeypatch.setattr(module, "SETTLED", 2)
 
 
 def expected(frames: list[Frame], settings: Filter = USUAL) -> np.ndarray:
@@ -77,6 +78,25 @@ def test_a_jump_takes_a_run_up(frames: list[Frame]) -> None:
     assert np.array_equal(shown(Player(clip, USUAL), 5), expected(frames[2:6]))
     assert clip.read_so_far == [2, 3, 4, 5]
     assert np.array_equal(shown(Player(clip, USUAL), 2), expected(frames[:3])), "no more frames than there are"
+
+
+def test_a_step_back_into_a_run_up_shows_no_picture_of_short_past(frames: list[Frame]) -> None:
+    clip = Listed(frames)
+    player = Player(clip, USUAL)
+    shown(player, 6)
+    clip.read_so_far.clear()
+    assert np.array_equal(shown(player, 5), expected(frames[3:6])), "a past of two frames"
+    assert clip.read_so_far == [5]
+    assert np.array_equal(shown(player, 4), expected(frames[1:5])), "not of one"
+
+
+def test_a_run_up_from_the_first_frame_is_as_good_as_playing(frames: list[Frame]) -> None:
+    clip = Listed(frames)
+    player = Player(clip, USUAL)
+    shown(player, 2)
+    clip.read_so_far.clear()
+    assert np.array_equal(shown(player, 1), expected(frames[:2]))
+    assert clip.read_so_far == [1]
 
 
 def test_a_cut_begins_anew_and_no_run_up_leads_over_it(frames: list[Frame]) -> None:

@@ -11,12 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from svgf_cl import Denoiser, Kalman, SvgfError
+from svgf_cl import Denoiser, SvgfError
 from svgf_cl.io.synthetic import room_frames
-from svgf_cl.view.player import Player
 from svgf_cl.view.screen import fast_bytes
 from svgf_cl.view.server import FILES, Server
-from tests.svgf_cl.view.clips import SHAPE, Listed, serving, started
+from tests.svgf_cl.view.clips import SHAPE, Listed, serving
 
 FRAME = {"index": 0, "filter": "kalman", "settings": {}, "exposure": 0.0}
 
@@ -145,11 +144,10 @@ def test_no_other_machine_reaches_it(server: Server) -> None:
 
 
 def test_a_used_port_is_refused(server: Server) -> None:
-    player = Player(Listed(list(room_frames(SHAPE, 2))), Kalman())
     with pytest.raises(
         SvgfError, match=rf"--port: expected a free port, got {server.server_port} \(.*\); choose another"
     ):
-        Server(server.server_port, player, started())
+        Server(server.server_port)
 
 
 def test_a_damaged_frame_is_told_and_the_next_one_shown() -> None:

@@ -30,7 +30,7 @@ def test_the_command_that_the_demo_ends_with_plays_its_frames(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder, told = tmp_path / "a folder", []
-    monkeypatch.setattr(Server, "serve_forever", lambda server: told.append(server.clip()))
+    monkeypatch.setattr(Server, "serve_forever", lambda server, poll: told.append(server.clip()))
     assert run("demo", "--frames", "2", "--size", "32x18", "--reference-spp", "4", "-o", folder) == 0
     command = shlex.split(capsys.readouterr().out.splitlines()[-1].partition(": ")[2])
     assert run(*command[1:], "--no-browser") == 0

@@ -13,7 +13,7 @@ def test_a_scene_is_played_with_references_of_all_frames(
 ) -> None:
     found = []
 
-    def serve(server: Server) -> None:
+    def serve(server: Server, poll: float) -> None:
         for index in range(3):
             found.append(server.frame({"index": index, "filter": "kalman"}))
 
