@@ -48,6 +48,33 @@ def test_each_has_a_past_of_its_own(frames: list[Frame]) -> None:
     np.testing.assert_array_equal(denoisers.denoise("one", frames[-1]), other)
 
 
+def test_other_settings_are_those_of_all_and_keep_the_past(frames: list[Frame]) -> None:
+    other = Kalman(iterations=2)
+    denoisers = Denoisers(SHAPE, SETTINGS)
+    denoisers.denoise("one", frames[0])
+    denoisers.update(other)
+    with Denoiser(SHAPE, settings=SETTINGS) as den:
+        den.denoise(frames[0])
+        den.update(other)
+        np.testing.assert_array_equal(denoisers.denoise("one", frames[1]), den.denoise(frames[1]))
+    np.testing.assert_array_equal(
+        denoisers.denoise("new", frames[1]), Denoiser(SHAPE, settings=other).denoise(frames[1])
+    )
+
+
+@pytest.mark.usefixtures("little_room")
+def test_what_is_denoised_in_tiles_begins_anew_with_other_settings(frames: list[Frame]) -> None:
+    other = Kalman(iterations=1, sigma_luminance=2.0)
+    denoisers = Denoisers(SHAPE, SETTINGS, share=0.5)
+    with pytest.warns(UserWarning, match="tiles"):
+        denoisers.denoise("one", frames[0])
+    denoisers.update(other)
+    assert "one" not in denoisers
+    with pytest.warns(UserWarning, match="tiles"):
+        picture = denoisers.denoise("one", frames[1])
+    np.testing.assert_array_equal(picture, Denoiser(SHAPE, settings=other).denoise(frames[1]))
+
+
 @pytest.mark.usefixtures("little_room")
 def test_all_of_the_memory_is_enough_for_whole_frames(frames: list[Frame], recwarn: pytest.WarningsRecorder) -> None:
     Denoisers(SHAPE, SETTINGS).denoise("one", frames[0])

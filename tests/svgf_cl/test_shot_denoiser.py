@@ -246,6 +246,22 @@ def test_a_cut_forgets_every_light() -> None:
     np.testing.assert_array_equal(again.picture, first.picture)
 
 
+def test_other_settings_are_those_of_every_light_and_keep_the_past() -> None:
+    shot, other = shot_of(), DEFAULT(iterations=1)
+    changed = denoiser_of()
+    changed.denoise(*shot[0])
+    changed.update(other)
+    found = changed.denoise(*shot[1])
+    for light in shot[1][1][:2]:
+        with Denoiser(SHAPE, settings=DEFAULT()) as den:
+            for (frame, lights), settings in zip(shot[:2], (DEFAULT(), other), strict=True):
+                den.update(settings)
+                (own,) = (each for each in lights if each.channels == light.channels)
+                expected = den.denoise(single(frame, own.radiance, None))
+        np.testing.assert_array_equal(found.lights[light.channels], expected)
+    assert_adds_up(found, shot[1][1])
+
+
 def test_the_error_of_a_sum_is_at_least_that_of_each_light() -> None:
     denoiser = denoiser_of(standard_error=True)
     lit = [replace(light, factor=None) for light in diffuse(0)[:2]]
