@@ -11,12 +11,14 @@ import pytest
 import typer
 
 from scripts import pass_table, scene_description
+from svgf_cl import chunks
 from svgf_cl.cli import application
 from svgf_cl.device import apart
 from svgf_cl.filters.formats import HALF_MAX
 from svgf_cl.io import cache, cameras, exr, frames
 from svgf_cl.io.readers import READERS
 from svgf_cl.oracle import temporal
+from svgf_cl.view import clip, player
 from svgf_cl_tracer import panorama
 from svgf_cl_tracer.description import document
 from svgf_cl_tracer.gltf import model, nodes
@@ -46,6 +48,10 @@ LIMITS = (
     ("files.md", f"within {apart.TIMEOUT_SECONDS} seconds"),
     ("conventions.md", f"whole numbers up to {power(frames.MAX_ID)}"),
     ("conventions.md", "Depth is {} to {}".format(*map(written, temporal.DEPTH_RANGE))),
+    ("view.md", f"in memory, up to {clip.MEMORY >> 30} GiB"),
+    ("view.md", f"in memory ({player.MEMORY >> 20} MiB of pictures)"),
+    ("view.md", f"begins anew {chunks.WARM_UP} frames before"),
+    ("view.md", f"a past of less than {player.SETTLED} frames"),
     (
         "conventions.md",
         f"the length of a normal {written(temporal.NORMAL_FLOOR**0.5)} to {written(temporal.CHANNEL_MAX)}",

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from svgf_cl.view.server import FILES
+
 ROOT = Path(__file__).parents[1]
 
 USE = """
@@ -56,6 +58,7 @@ def test_wheel_holds_kernels_types_pages_and_license(wheel):
     assert {f"svgf_cl/kernels/{path.name}" for path in (ROOT / "kernels").glob("*.cl*")} <= names
     assert {"svgf_cl/py.typed", "svgf_cl/denoiser.py"} <= names
     assert {f"svgf_cl/compare/page.{kind}" for kind in ("html", "css", "js")} <= names
+    assert {f"{package.replace('.', '/')}/{name}" for package, name, _ in FILES.values()} <= names
     assert "svgf_cl_tracer/builtin/cornell.py" in names
     (declared,) = (name for name in names if name.endswith("entry_points.txt"))
     assert "svgf_cl_tracer.cli.render:render" in zipfile.ZipFile(wheel).read(declared).decode()
