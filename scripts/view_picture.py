@@ -15,22 +15,22 @@ from typing import IO
 import numpy as np
 from PIL import Image
 
-from svgf_cl.io.display import write_image
+from svgf_cl.compare.imagery import encoded
+from svgf_cl.io.atomic import written_whole
 from svgf_cl_tracer.cli.demo import viewing
 from tests.browser import browser
 
 DEMO = Path("out/demo")
 TARGET = Path("docs/view.webp")
 FRAME = 15  # which has a reference
-SIZE = 1500, 900
+SIZE = 1400, 840
 
-# Go to the frame, and wait until it is drawn.
-STOP_AT = f"""new Promise(done => {{
+QUALITY = 75  # of the WebP: text stays sharp
+
+# Play up to the frame.
+PLAYED = f"""new Promise(done => {{
   const number = document.querySelector("#frame");
   const wait = () => number.value.startsWith("frame {FRAME} ") ? done() : requestAnimationFrame(wait);
-  const position = document.querySelector("[name=position]");
-  position.value = {FRAME};
-  position.dispatchEvent(new Event("input", {{ bubbles: true }}));
   wait();
 }})"""
 
@@ -39,10 +39,11 @@ def main() -> None:
     """Let the page show a frame, and write what is seen."""
     with served() as url, TemporaryDirectory() as profile, browser(Path(profile)) as tab:
         tab.open(url, *SIZE)
-        tab.ask(STOP_AT)
-        tab.settle()
+        tab.ask(PLAYED)
         shot = base64.b64decode(tab.call("Page.captureScreenshot", format="png")["data"])
-    write_image(TARGET, np.asarray(Image.open(io.BytesIO(shot)).convert("RGB")))
+    picture = np.asarray(Image.open(io.BytesIO(shot)).convert("RGB"))
+    with written_whole(TARGET) as aside:
+        aside.write_bytes(encoded(picture, QUALITY))
     print(f"{TARGET}: {TARGET.stat().st_size / 1000:.0f} kB")
 
 

@@ -45,8 +45,8 @@ class FilesClip:
 
     @property
     def name(self) -> str:
-        """The folder's."""
-        return self._shot.paths[0].resolve().parent.name
+        """The folder's, and that of the folder above."""
+        return "/".join(self._shot.paths[0].resolve().parent.parts[-2:])
 
     @property
     def note(self) -> str:

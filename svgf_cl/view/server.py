@@ -99,7 +99,10 @@ class Server(ThreadingHTTPServer):
     def play(self, player: Player, start: Start, poll: float = 0.5) -> None:
         """Answer until `shutdown`, of which it learns within `poll` seconds."""
         self._player, self._start, self._screen, self._lock = player, start, Screen(), Lock()
-        self.serve_forever(poll)
+        try:
+            self.serve_forever(poll)
+        finally:
+            self._lock.acquire()  # for good: the device is at rest when the process ends
 
     @property
     def url(self) -> str:

@@ -40,7 +40,7 @@ def clip_of(folder: Path, references: dict[int, Path] | None = None, *, allow_ga
 def test_frames_are_those_of_the_files(rendered: Path) -> None:
     clip = clip_of(rendered)
     assert (clip.name, clip.shape, clip.numbers, clip.has_references) == (
-        rendered.name,
+        "/".join(rendered.parts[-2:]),
         SHAPE,
         [5, 6, 7, 8, 9, 10],
         False,

@@ -35,7 +35,7 @@ def test_the_command_that_the_demo_ends_with_plays_its_frames(
     command = shlex.split(capsys.readouterr().out.splitlines()[-1].partition(": ")[2])
     assert run(*command[1:], "--no-browser") == 0
     (clip,) = told
-    assert (clip["name"], clip["numbers"], clip["has_references"]) == ("noisy", [0, 1], True)
+    assert (clip["name"], clip["numbers"], clip["has_references"]) == ("a folder/noisy", [0, 1], True)
     assert clip["settings"] == asdict(SETTINGS)
 
 
