@@ -50,6 +50,11 @@ class Item:
         return sum(array.nbytes for array in arrays if array is not None)
 
 
+def without_carried(frame: Frame) -> Frame:
+    """The frame without the fields that no filter reads, which would take memory."""
+    return replace(frame, **dict.fromkeys(CARRIED))
+
+
 class Clip(Protocol):
     """Frames by their index.
 
@@ -131,7 +136,7 @@ class RenderedClip:
             item = next(self._items, None)
             if item is None:
                 raise SvgfError("rendering broke off at an earlier frame; start svgf-cl view again")
-            item = replace(item, frame=replace(item.frame, **dict.fromkeys(CARRIED)))
+            item = replace(item, frame=without_carried(item.frame))
             self._check_memory(item)
             self._rendered.append(item)
         return self._rendered[index]

@@ -15,7 +15,7 @@ from svgf_cl.io.sequence import number_of
 from svgf_cl.io.shot import Shot, ShotFrame
 from svgf_cl.io.window import placed
 from svgf_cl.prefilter import Effort
-from svgf_cl.view.clip import Item, Picture
+from svgf_cl.view.clip import Item, Picture, without_carried
 
 MEMORY = 2**30  # bytes, for the frames that stay in memory
 AHEAD = 2  # frames that are read while one is filtered
@@ -93,7 +93,7 @@ class FilesClip:
 
     def _item(self, index: int) -> Item:
         source = self._shot.read(index)
-        return Item(source.frame, source.lights, self._reference(self.numbers[index], source))
+        return Item(without_carried(source.frame), source.lights, self._reference(self.numbers[index], source))
 
     def _reference(self, number: int, source: ShotFrame) -> Picture | None:
         """The reference of a frame, on the window of the shot."""

@@ -78,12 +78,12 @@ class Player:
             self._kept.clear()
             self._denoiser.update(settings)
             self._settings = settings
+        item = self.clip.read(index)  # first of all: without it no run-up is worth anything
         if index and index in self._kept:
-            return self.clip.read(index), self._kept[index]
+            return item, self._kept[index]
         run_up = self._run_up(index)
         for each in run_up:
             self._skip(each, is_kept=each >= run_up.start + SETTLED or self._begins(run_up.start))
-        item = self.clip.read(index)
         return item, self._filter(index, item)
 
     def _run_up(self, index: int) -> range:

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from svgf_cl import Denoiser, Kalman, Settings
 from svgf_cl.io.synthetic import room_frames
 from svgf_cl.view.scenes import room
 from tests.browser import Tab, browser
@@ -21,6 +22,15 @@ WITHIN = 20  # seconds
 def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
     with browser(tmp_path_factory.mktemp("profile")) as tab:
         yield tab
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built() -> None:
+    """All kernels are built before the page waits for them, which may take longer than `WITHIN`."""
+    (frame,) = room_frames(SHAPE, 1)
+    for settings in (Kalman(), Kalman(iterations=2), Settings()):
+        with Denoiser(SHAPE, settings=settings) as den:
+            den.denoise(frame)
 
 
 @pytest.fixture(scope="module")

@@ -76,7 +76,7 @@ def test_a_step_back_to_what_is_no_longer_in_memory_takes_a_run_up(
 def test_a_jump_takes_a_run_up(frames: list[Frame]) -> None:
     clip = Listed(frames)
     assert np.array_equal(shown(Player(clip, USUAL), 5), expected(frames[2:6]))
-    assert clip.read_so_far == [2, 3, 4, 5]
+    assert clip.read_so_far == [5, 2, 3, 4]
     assert np.array_equal(shown(Player(clip, USUAL), 2), expected(frames[:3])), "no more frames than there are"
 
 
@@ -107,7 +107,7 @@ def test_a_cut_begins_anew_and_no_run_up_leads_over_it(frames: list[Frame]) -> N
     assert np.array_equal(picture, expected(frames[4:6]))
     clip.read_so_far.clear()
     assert np.array_equal(shown(Player(clip, USUAL), 5), expected(frames[4:6]))
-    assert clip.read_so_far == [4, 5]
+    assert clip.read_so_far == [5, 4]
 
 
 def test_another_setting_keeps_the_past(frames: list[Frame]) -> None:
@@ -144,6 +144,13 @@ def test_a_damaged_frame_is_told_and_the_next_one_begins_anew(frames: list[Frame
         player.show(3, USUAL)
     assert np.array_equal(shown(player, 4), expected(frames[4:5]))
     assert np.array_equal(shown(player, 5), expected(frames[4:6]))
+
+
+def test_no_run_up_leads_to_a_damaged_frame(frames: list[Frame]) -> None:
+    clip = Listed(frames, damaged=(5,))
+    with pytest.raises(FileError):
+        Player(clip, USUAL).show(5, USUAL)
+    assert clip.read_so_far == [5]
 
 
 def test_what_the_filter_refuses_leaves_no_past_and_the_next_frame_is_shown(frames: list[Frame]) -> None:
