@@ -33,7 +33,7 @@ class SceneDescription(Part, title="Scene"):
     metres_per_unit: Annotated[float, Field(gt=0), unit("m")] = Field(1.0, description="The model's unit of length.")
     camera: View | list[View] | None = Field(
         None,
-        description="One camera, or several that it passes at equal intervals. Default: the model's, or one that sees all.",
+        description="One, or several that it passes at equal intervals. Default: the model's, or one that sees all.",
     )
     lights: list[AnyLight] = Field(
         [], description="Lights in addition to those of the model; at most one of them is a sky."
