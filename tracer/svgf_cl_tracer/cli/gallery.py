@@ -58,7 +58,7 @@ def scenes(
     Examples:
       svgf-cl scenes
       svgf-cl scenes -o scenes.png
-      svgf-cl scenes ../shared/scenes/sponza ../shared/scenes/fox/Fox.glb --sky 1,1,1 --size 640x360 -o all.webp
+      svgf-cl scenes my_scene Fox.glb --sky 1,1,1 --size 640x360 -o all.webp
     """
     require_tracer()
     from svgf_cl.io.panels import contact_sheet

@@ -66,7 +66,7 @@ def render(
     \b
     Examples:
       svgf-cl render cornell -o out/box
-      svgf-cl render ../shared/scenes/garden --alternative-lights -o out/garden
+      svgf-cl render my_scene --alternative-lights -o out/evening
       svgf-cl render sponza.glb --camera 8,3,0/0,3,0/60 --camera 6,2,1/0,3,0/60 --sky 0.8,0.9,1 -o out/sponza
       svgf-cl render cornell --frames 4 --size 320x180 --reference-spp 256 -o out/box
       svgf-cl render cornell --frames 4 --until-error 0.02 --scheduler tcp://10.0.0.7:8786 -o out/box
