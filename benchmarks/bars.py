@@ -180,7 +180,7 @@ def bar_table(results: Results, platforms: Mapping[str, str]) -> Table:
         held.append((against_pocl(by_name[POCL]), INTEL.platform, by_name[INTEL.platform]))
     rows = [row for each in held for row in judged(*each)]
     return Table(
-        "what has to hold; at 1280x720 where no size is told", ("bar", "implementation", "wanted", "measured", ""), rows
+        "bars; at 1280x720 unless a size is named", ("bar", "implementation", "wanted", "measured", ""), rows
     )
 
 
