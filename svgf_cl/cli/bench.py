@@ -123,9 +123,9 @@ def bench(
 def check_gate(old: Path | None, fail_above: float | None, junit: Path | None) -> None:
     """Raise `SvgfError` where a gate lacks what it needs."""
     if fail_above and not old:
-        raise SvgfError("--fail-above: expected --compare OLD.json beside it, got none")
+        raise SvgfError("--fail-above: expected --compare OLD.json too, got none")
     if junit and not fail_above:
-        raise SvgfError("--junit: expected --fail-above RATIO beside it, got none")
+        raise SvgfError("--junit: expected --fail-above RATIO too, got none")
 
 
 def parse_pattern(text: str) -> re.Pattern[str]:

@@ -128,7 +128,7 @@ def compare(
 
     limits = Limits.parse(fail_below, fail_above)
     if junit and not limits:
-        raise SvgfError("--junit: expected --fail-below or --fail-above beside it, got none")
+        raise SvgfError("--junit: expected --fail-below or --fail-above too, got none")
     check_files(json, junit)
     is_made = reference is None and are_pictures(inputs)
     if is_made or reference is not None:
@@ -180,7 +180,7 @@ def are_pictures(inputs: Sequence[str]) -> bool:
         require(Path(text))
     if pictures and len(pictures) < len(inputs):
         scene = next(text for text in inputs if text not in pictures)
-        raise SvgfError(f"expected scenes or pictures, got both: {scene} is a scene, {pictures[0]} is none")
+        raise SvgfError(f"expected scenes or pictures, got both: {scene} is a scene, {pictures[0]} is not")
     return bool(pictures)
 
 
@@ -188,9 +188,7 @@ def refuse_rendering(options: Mapping[str, object]) -> None:
     """Raise `SvgfError` where an option of rendering was given though nothing is rendered."""
     for name, value in options.items():
         if value:
-            raise SvgfError(
-                f"{name}: expected scenes to render beside it, got pictures or frames that are made already"
-            )
+            raise SvgfError(f"{name}: expected only scenes to render, got pictures or frames too")
 
 
 def of_pictures(inputs: Sequence[str], filters: str | None) -> Footage:
@@ -203,7 +201,7 @@ def of_pictures(inputs: Sequence[str], filters: str | None) -> Footage:
             "frames to be filtered want --reference"
         )
     if filters is not None:
-        raise SvgfError("--filters: expected scenes, or frames with --reference, got pictures that are made already")
+        raise SvgfError("--filters: expected scenes, or frames with --reference, got finished pictures")
     return open_pictures(Path(inputs[0]), Path(inputs[1]))
 
 
@@ -212,7 +210,7 @@ def of_frames(inputs: Sequence[str], reference: Path, *, jitter: bool) -> Footag
     from svgf_cl.compare.recorded import open_frames
 
     if not inputs:
-        raise SvgfError("--reference: expected frames beside it, got none")
+        raise SvgfError("--reference: expected frames too, got none")
     return open_frames([Path(text) for text in inputs], reference, jitter=jitter)
 
 

@@ -138,7 +138,7 @@ def denoise(
     if layer is not None and not re.fullmatch(r"[^.\s][^.]*", layer):
         raise SvgfError(f"--layer: expected a name without dots, got {shown(layer)}")
     if plain and layer:
-        raise SvgfError("--layer: expected no --plain, which writes nothing beside the picture")
+        raise SvgfError("--layer: expected no --plain, which writes only the picture")
     fields = {"albedo": albedo, "normal": normal, "depth": depth, "motion": motion, "id": id_}
     if bool(frames) == bool(color):
         raise SvgfError(f"denoise: expected either FRAMES or --color, got {'both' if color else 'neither'}")
@@ -217,5 +217,5 @@ def chosen(sources: list[Path], span: str | None) -> range:
     places = [place for place, path in enumerate(sources) if first <= number_of(path) <= last]
     if not places:
         numbers = f"{number_of(sources[0])}-{number_of(sources[-1])}"
-        raise SvgfError(f"--frames: expected some of {numbers}, which are there, got {span}")
+        raise SvgfError(f"--frames: expected frames among {numbers}, got {span}")
     return range(places[0], places[-1] + 1)

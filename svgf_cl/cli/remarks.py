@@ -102,11 +102,14 @@ class Remarks:
         if not any(finding.field == "depth" for finding in report.findings):
             found += [f"depth: {unknown.why}" for unknown in report.unknown if unknown.topic == SEEN.topic]
         if self._lacks_motion:
-            found.append(f"motion: 0 in all pixels, though things move; {BLURRED}")
+            found.append(f"motion: 0 in all pixels, but objects move; {BLURRED}")
         for line in found:
             warnings.warn(line, stacklevel=2)
         if found:
-            warnings.warn("told from the first frames; svgf-cl check says more, --no-check leaves it out", stacklevel=2)
+            warnings.warn(
+                "these warnings are about the first frames; svgf-cl check says more, --no-check turns them off",
+                stacklevel=2,
+            )
 
 
 def look_at_surfaces(shot: Shot, index: int, source: ShotFrame) -> None:
@@ -121,6 +124,6 @@ def require_surfaces(path: Path, frame: Frame) -> None:
     # A great number may stand for a miss.
     if behind.size and not (hit < FAR * np.median(behind)).any():
         raise FileError(
-            f"{path}: expected depth above 0 where there is a surface, got it negative everywhere; "
+            f"{path}: expected depth above 0 on surfaces, got negative depth everywhere; "
             "negate the z of a camera that looks along -z"
         )
