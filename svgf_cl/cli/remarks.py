@@ -1,4 +1,4 @@
-"""What is said of frames before they are denoised: the fields that are read, and what is wrong in the first frames."""
+"""Remarks on frames before they are denoised: the fields that are read, and mistakes in the first frames."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ FIRST = 8  # frames that are checked; they tell nearly all that more would
 # What it costs not to have a field.
 COSTS = {
     "albedo": "textures are smoothed like light",
-    "id": "objects are told apart by depth and normal alone",
-    "emission": "what shines is smoothed too",
+    "id": "objects are distinguished only by depth and normal",
+    "emission": "lamps and sky are smoothed too",
     OPTIONAL: "history is lost where the camera moves along its axis",
 }
 PARTS = ("direct", "indirect")  # of the light: `Reading.lights` has them
@@ -52,7 +52,7 @@ def described(shot: Shot, first: ShotFrame) -> str:
     return "; ".join(parts)
 
 
-BLURRED = "each frame is denoised alone; turn motion blur off, with which renderers write no motion, and blur later"
+BLURRED = "each frame is denoised alone; with motion blur, renderers write no motion: turn it off, and blur later"
 
 
 class Remarks:
