@@ -69,7 +69,7 @@ def application() -> typer.Typer:
     # Plain help and errors: they read the same in a terminal, in a log and through grep.
     app = typer.Typer(
         invoke_without_command=True,
-        epilog="Exit codes: 0 fine; 1 a check failed or a run broke off; 2 wrong input; 130 interrupted.",
+        epilog="Exit codes: 0 success; 1 a check or a run failed; 2 wrong input; 130 interrupted.",
         add_completion=False,
         rich_markup_mode=None,
         pretty_exceptions_enable=False,

@@ -23,23 +23,25 @@ REMEDY = "make the machine idle or choose a smaller --size, and run it again"
 def tune(
     size: Size = "1280x720",
     seconds: Annotated[
-        float, typer.Option(metavar="S", min=0.0, help="Time for the search; what it leaves untried is told.")
+        float,
+        typer.Option(metavar="S", min=0.0, help="Time for the search; candidates that were not tried are reported."),
     ] = SECONDS,
     json: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Also write there what was tried, as JSON; anew after each trial."),
+        typer.Option(metavar="FILE", help="Also write all trials there as JSON, after each trial."),
     ] = None,
-    store: Annotated[bool, typer.Option(help="Remember what was found; else only tell it.")] = True,
-    reset: Annotated[bool, typer.Option("--reset", help="Forget what was found for this device, and leave.")] = False,
+    store: Annotated[bool, typer.Option(help="Store the result, or only print it.")] = True,
+    reset: Annotated[bool, typer.Option("--reset", help="Delete the stored result of this device, and exit.")] = False,
 ) -> None:
-    """Find how this device denoises fastest, and remember it for its driver.
+    """Find the fastest settings of this device, and store them for this device and driver.
 
-    Times vector widths, exponentials, work-groups and alignments of rows against the default on a built-in room, in
-    less than a minute, and stores the fastest where every later run finds it; the default, unless something is faster
-    beyond noise. Pictures stay the same to within rounding. PYOPENCL_CTX picks another device.
+    Compares vector widths, exponentials, work-groups and alignments of rows with the default on a built-in room, in
+    less than a minute. It stores the fastest, which later runs use; if nothing is faster beyond noise, it stores the
+    default. Pictures stay the same apart from rounding. PYOPENCL_CTX chooses another device.
 
-    Exit code 1, and nothing is stored, where the machine was too busy to tell: candidates were left out for lack of
-    time, or the default's own time wavers. Make the machine idle or choose a smaller --size, and run it again.
+    If the machine was too busy for a reliable result, nothing is stored and the exit code is 1: there was no time for
+    all candidates, or the default's own time varied too much. Then stop other programs or choose a smaller --size,
+    and run it again.
 
     \b
     Examples:
