@@ -67,7 +67,7 @@ class Staging:
 
     @classmethod
     def of(cls, value: np.ndarray, queue: cl.CommandQueue) -> Staging:
-        """Memory for arrays like this one; `DeviceError` if there is none left."""
+        """Memory for arrays like this one, mapped by this queue; `DeviceError` if there is none left."""
         flags = cl.mem_flags.READ_WRITE | cl.mem_flags.ALLOC_HOST_PTR
         access = cast("cl.map_flags", cl.map_flags.READ | cl.map_flags.WRITE)  # an int, which its types do not know
         with lack_of_room(queue.device, value.nbytes, value.nbytes):
@@ -85,6 +85,7 @@ class PinnedCopies(HostCopies):
 
     def __init__(self, queue: cl.CommandQueue) -> None:
         super().__init__(queue)
+        self._mapping = cl.CommandQueue(queue.context, queue.device)  # does not wait for what the other has to do
         self._staging: dict[str, Staging] = {}
 
     def upload(self, name: str, value: np.ndarray, target: cl.Buffer) -> None:
@@ -110,5 +111,5 @@ class PinnedCopies(HostCopies):
         """The memory of this name, made anew where the array is another one than before."""
         staging = self._staging.get(name)
         if staging is None or (staging.view.shape, staging.view.dtype) != (value.shape, value.dtype):
-            staging = self._staging[name] = Staging.of(value, self._queue)
+            staging = self._staging[name] = Staging.of(value, self._mapping)
         return staging

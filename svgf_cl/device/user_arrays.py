@@ -151,10 +151,11 @@ class UserArrays:
             elif isinstance(result, np.ndarray):
                 self._host.download(OUT, exchange.landing, result)
         finally:  # after an error too: what was put on the queue before it may still be at work
-            if self._works_in_place(result):
+            waits = isinstance(result, np.ndarray)
+            if waits:
                 self._queue.finish()
+            self._in_flight.keep([] if waits else exchange.svm)
             self._host.wait()
-            self._in_flight.keep(exchange.svm)
 
     def _works_in_place(self, result: UserArray) -> TypeGuard[np.ndarray]:
         return isinstance(result, np.ndarray) and result.flags.aligned and shares_memory(self._queue.device)
