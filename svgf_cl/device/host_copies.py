@@ -75,6 +75,11 @@ class Staging:
             view, _ = cl.enqueue_map_buffer(queue, buffer, access, 0, value.shape, value.dtype)
         return cls(view)
 
+    def wait(self) -> None:
+        """Until the memory may be written to again."""
+        if self.upload:
+            self.upload.wait()
+
 
 class PinnedCopies(HostCopies):
     """The same by way of pinned memory, from which a GPU copies by itself and at full speed.
@@ -91,8 +96,7 @@ class PinnedCopies(HostCopies):
     def upload(self, name: str, value: np.ndarray, target: cl.Buffer) -> None:
         """As `HostCopies.upload`, but the array is its owner's again when this returns."""
         staging = self._staging_for(name, value)
-        if staging.upload:
-            staging.upload.wait()
+        staging.wait()
         np.copyto(staging.view, value)
         staging.upload = cl.enqueue_copy(self._queue, target, staging.view, is_blocking=False)
         self._queue.flush()  # the GPU is to begin while the host goes on with the next field
@@ -104,7 +108,9 @@ class PinnedCopies(HostCopies):
         np.copyto(target, staging.view)
 
     def forget(self) -> None:
-        """Give back the pinned memory."""
+        """Give back the pinned memory, once nothing is copied from it any more."""
+        for staging in self._staging.values():
+            staging.wait()
         self._staging.clear()
 
     def _staging_for(self, name: str, value: np.ndarray) -> Staging:
