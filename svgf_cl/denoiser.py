@@ -148,7 +148,8 @@ class Denoiser:
         Raises
         ------
         FrameError
-            If a field is missing, of another shape or type, or on another context. The call counts as not made.
+            If a field is missing, of another shape or type, on another context, or in memory that the device cannot
+            use (SVM, OpenGL). The call counts as not made.
         ArgumentError
             If the set of fields changed, if `out` is of another shape or type, if as an Array it is the memory of a
             field, or if an event failed. The call counts as not made.
@@ -249,7 +250,7 @@ class Denoiser:
 
     @property
     def events(self) -> tuple[tuple[str, cl.Event], ...]:
-        """Label and OpenCL event of every pass of the last frame, and of copies of Arrays with strides, in order."""
+        """Label and OpenCL event of every pass of the last frame, and of what is done to Arrays around them, in order."""
         return self._events
 
     def profile(self) -> dict[str, float]:
