@@ -250,7 +250,7 @@ class Denoiser:
 
     @property
     def events(self) -> tuple[tuple[str, cl.Event], ...]:
-        """Label and OpenCL event of every pass of the last frame, and of what is done to Arrays around them, in order."""
+        """Label and event of every pass of the last frame, and of what is done to Arrays around them, in order."""
         return self._events
 
     def profile(self) -> dict[str, float]:

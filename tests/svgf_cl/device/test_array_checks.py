@@ -57,7 +57,6 @@ def test_fields_and_result_in_parts_of_one_buffer(
     frame = in_one_buffer(FRAME, den.queue, buffer)
     out = part(den.queue, buffer, 0, np.zeros(OUT, np.float32))
     with monkeypatch.context() as patch:
-        patch.delattr(cl, "enqueue_copy")
         patch.setattr(user_arrays, "StridedCopies", None)
         patch.setattr(user_arrays, "allocate", None)
         den.denoise(frame, out=out)

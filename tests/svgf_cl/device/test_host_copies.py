@@ -78,7 +78,7 @@ def test_the_host_does_not_wait_for_one_upload_before_the_next(
 ) -> None:
     buffers = {name: room(queue, value) for name, value in VALUES.items()}
     for name, value in VALUES.items():
-        copies.upload(name, value, buffers[name])  # would never return
+        copies.upload(name, value, buffers[name])  # else would never return
     soon(held_up)
     copies.wait()
     for name, value in VALUES.items():

@@ -431,6 +431,7 @@ class TestUploads:
                 uploads.append(is_blocking)
             return usual(queue, target, source, is_blocking=is_blocking)
 
+        den.denoise(FRAME)
         usual = cl.enqueue_copy
         monkeypatch.setattr(cl, "enqueue_copy", copy)
         den.denoise(FRAME)
