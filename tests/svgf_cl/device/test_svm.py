@@ -131,6 +131,20 @@ def of_other_memory(queue: cl.CommandQueue) -> cl_array.Array:
     return cl_array.Array(queue, SHAPE, np.float32, data=cl.SVM(FRAME.depth.copy()))
 
 
+def test_all_memory_is_used_where_it_lies_on_a_device_that_shares_it(queue: cl.CommandQueue) -> None:
+    if not capabilities(queue.device) & svm.SYSTEM:
+        pytest.skip(f"{queue.device.name} does not work in all memory of the host")
+    memory = {name: value.copy() for name, value in FRAME.present().items()}
+    given = {
+        name: cl_array.Array(queue, value.shape, value.dtype, data=cl.SVM(value)) for name, value in memory.items()
+    }
+    picture = np.zeros(OUT, np.float32)
+    out = cl_array.Array(queue, OUT, np.float32, data=cl.SVM(picture))
+    Denoiser(SHAPE, queue=queue).denoise(Frame(**given), out=out)
+    cl.wait_for_events(out.events)
+    assert_array_equal(picture, Denoiser(SHAPE, queue=queue).denoise(FRAME))
+
+
 class TestRefused:
     @pytest.fixture
     def den(self, queue: cl.CommandQueue) -> Denoiser:
