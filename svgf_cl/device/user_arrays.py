@@ -114,11 +114,9 @@ class UserArrays:
             check_apart({name: value for name, value in direct.items() if name != OUT}, result)
         before = {name: self._gather(name, value) for name, value in given.items() if name not in (OUT, *direct)}
         host = {name: value for name, value in arrays.items() if isinstance(value, np.ndarray)}
-        wrapped = self._wrapped(host) if self._works_in_place(result) else {}
-        copied = {name: value for name, value in host.items() if name not in wrapped}
-        buffers = {name: buffer_of(value) for name, value in direct.items()} | wrapped
+        buffers = {name: buffer_of(value) for name, value in direct.items()}
         buffers |= {name: buffer_of(copy.target) for name, copy in before.items()}
-        buffers |= {name: self._keep(name, value.nbytes) for name, value in copied.items()}
+        buffers |= self._from_host(host, result)
         landing = buffers[OUT] if OUT in buffers else buffer_of(given[OUT])
         after = []
         if ALPHA in fields or OUT not in buffers:
@@ -127,7 +125,7 @@ class UserArrays:
             buffers[OUT] = buffer_of(after[0].source)
         if before or after:
             self._strided = self._strided or StridedCopies(self._queue)
-        self._upload({name: value for name, value in copied.items() if name != OUT}, buffers)
+        self._upload(host, buffers)
         return Exchange(buffers, landing, tuple(before.values()), tuple(after), tuple(given.values()))
 
     def copy(self, copies: Sequence[Copy]) -> list[tuple[str, cl.Event]]:
@@ -181,6 +179,11 @@ class UserArrays:
         """A whole buffer as an Array in C order."""
         return cl_array.Array(self._queue, shape, dtype, data=buffer)
 
+    def _from_host(self, arrays: Mapping[str, np.ndarray], result: UserArray) -> dict[str, cl.Buffer]:
+        """Buffers of numpy arrays: their own memory where the device works in it, else kept ones that take copies."""
+        wrapped = self._wrapped(arrays) if self._works_in_place(result) else {}
+        return wrapped | {name: self._keep(name, value.nbytes) for name, value in arrays.items() if name not in wrapped}
+
     def _wrapped(self, arrays: Mapping[str, np.ndarray]) -> dict[str, cl.Buffer]:
         """Buffers that are the arrays' own memory; no two may overlap (OpenCL 1.2, 5.2.1), so others are left out."""
         chosen: dict[str, np.ndarray] = {}
@@ -189,11 +192,12 @@ class UserArrays:
                 chosen[name] = value
         return {name: wrap(self._queue, value) for name, value in chosen.items()}
 
-    def _upload(self, fields: Mapping[str, np.ndarray], buffers: Mapping[str, cl.Buffer]) -> None:
-        """Put the copies of numpy arrays on the queue; where one fails, those before it are waited for."""
+    def _upload(self, arrays: Mapping[str, np.ndarray], buffers: Mapping[str, cl.Buffer]) -> None:
+        """Put copies of fields to kept buffers on the queue; where one fails, those before it are waited for."""
         try:
-            for name, value in fields.items():
-                self._host.upload(name, value, buffers[name])
+            for name, value in arrays.items():
+                if name != OUT and buffers[name] is self._kept.get(name):
+                    self._host.upload(name, value, buffers[name])
         except BaseException:
             self._host.wait()
             raise
