@@ -16,10 +16,13 @@ import pyopencl.tools as cl_tools
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from svgf_cl import ArgumentError, Denoiser, DeviceError, Frame, FrameError, Settings
+from svgf_cl import ArgumentError, Denoiser, DeviceError, Eaw, Frame, FrameError, Inputs, Settings
 from svgf_cl.device import user_arrays
+from svgf_cl.device.tiling import Tiling
 from svgf_cl.device.tuning import default_tuning
 from svgf_cl.frame import CARRIED, CHANNELS
+from svgf_cl.io.synthetic import room_frames
+from svgf_cl.tiled import TiledDenoiser
 from tests.arrays import STRIDED, big_endian, fetched, like, mapped_file, of_one_row, read_only, strided, unaligned
 from tests.faults import broken_launch, failing
 from tests.frames import FULL, PLAIN, SHAPE, SPLIT, bumpy_sequence, wall
@@ -416,6 +419,18 @@ class TestUploads:
             assert_array_equal(den.denoise(frame), other.denoise(frame))
             den.denoise(frame, out=(out := cl_array.empty(queue, OUT, np.float32)))
             assert_array_equal(out.get(), other.denoise(frame))
+
+    def test_tiles_are_uploaded_one_after_the_other(self, den: Denoiser, queue: cl.CommandQueue) -> None:
+        settings, frames = Eaw(iterations=1), list(room_frames((60, 150), 2))
+        inputs = Inputs.of(frames[0])
+        least = Tiling(settings.pipeline(inputs), (60, 150), den.tuning.row_alignment).least()
+        tiled = TiledDenoiser(
+            (60, 150), inputs, settings=settings, queue=queue, tuning=den.tuning, max_bytes=int(1.2 * least)
+        )
+        assert tiled.tiles > 1
+        other = Denoiser((60, 150), settings=settings, queue=queue)
+        for frame in frames:
+            assert_array_equal(tiled.denoise(frame), other.denoise(frame))
 
     def test_sizes_may_change(self, den: Denoiser) -> None:
         den.denoise(FRAME)
