@@ -84,6 +84,7 @@ class TilePlan:
         self._results = HostPlanes(tiling.results, tiling.shape)
         self._stages = {name: stage for name, stage in stages(pipeline).items() if self._kept(stage)}
         self._frame_number = 0
+        self._copies: list[cl.Event] = []  # to and from the host's planes, which may be under way
 
     @property
     def stages(self) -> list[str]:
@@ -102,12 +103,14 @@ class TilePlan:
 
     def begin_frame(self, *, first: bool) -> None:
         """Before the tiles of a frame; `first` where nothing is known of the past."""
+        self._wait()
         if first:
             self._frame_number = 0
             self._before.forget()
 
     def end_frame(self) -> None:
         """After the tiles of a frame: they are the past of the next. Without it that frame has left nothing."""
+        self._wait()
         self._before, self._now = self._now, self._before
         self._frame_number += 1
 
@@ -174,7 +177,7 @@ class TilePlan:
         corner = window.corner[0] - window.origin[0], window.corner[1] - window.origin[1]
         for resource in step.past:
             place = Place(self._past[history_of(resource)], self._past_layout, corner)
-            self._before.upload(self._queue, resource, place, window.corner, window.size)
+            self._copies += self._before.upload(self._queue, resource, place, window.corner, window.size)
 
     def _enqueue(self, step: Step, user: UserBuffers, past: tuple[int, int]) -> tuple[str, cl.Event]:
         numbers = {"frame_number": self._frame_number, "past_y": past[0], "past_x": past[1]}
@@ -235,7 +238,14 @@ class TilePlan:
         for planes in (self._now, self._results):
             for resource in planes.resources:
                 place = Place(self._buffers[Buffer(resource)], self._at.layout, (rows.start, columns.start))
-                planes.download(self._queue, resource, place, (tile.rows.begin, tile.columns.begin), size)
+                corner = tile.rows.begin, tile.columns.begin
+                self._copies += planes.download(self._queue, resource, place, corner, size)
+
+    def _wait(self) -> None:
+        """Have the host's planes be the host's again."""
+        if self._copies:
+            cl.wait_for_events(self._copies)
+        self._copies = []
 
 
 def offset(tile: Tile, window: PastWindow) -> tuple[int, int]:

@@ -1,4 +1,4 @@
-"""``svgf-cl tune``: the fastest vector width, exponential, work-group and layout of rows for this device."""
+"""``svgf-cl tune``: the fastest vector width, exponential, work-group, layout of rows and copies for this device."""
 
 from __future__ import annotations
 
@@ -37,7 +37,8 @@ def tune(
 
     Compares vector widths, exponentials, work-groups and alignments of rows with the default on a built-in room, in
     less than a minute. It stores the fastest, which later runs use; if nothing is faster beyond noise, it stores the
-    default. Pictures stay the same apart from rounding. PYOPENCL_CTX chooses another device.
+    default. On devices with memory of their own it then tries copies through pinned memory. Pictures stay the same
+    apart from rounding. PYOPENCL_CTX chooses another device.
 
     If the machine was too busy for a reliable result, nothing is stored and the exit code is 1: there was no time for
     all candidates, or the default's own time varied too much. Then stop other programs or choose a smaller --size,
@@ -71,17 +72,21 @@ def tune(
             note(UNFINISHED)
 
         final = tuner.search(step)
-    note(verdict(final))
+    chosen = final.tuning if final.is_faster else default_tuning(device)
+    copies = tuner.race_copies(chosen)
+    if copies and copies.is_faster:
+        chosen = copies.tuning
+    found = "; ".join([verdict(final), *([f"calls from numpy to numpy: {verdict(copies)}"] if copies else [])])
+    note(found)
     columns = ("vector", "exponential", "rows", "group", "ms", "Mpixel/s", "time/default")
     show(f"{size}, in the order tried", columns, [trial_row(trial, shape) for trial in tuner.trials])
     for trial in tuner.trials:
         if trial.fault:
             print(f"rejected {trial.tuning}: {trial.fault}")
-    print(verdict(final))
+    print(found)
     if tuner.doubts:
         typer.echo(f"nothing is stored: {', and '.join(tuner.doubts)}; {REMEDY}", err=True)
         raise typer.Exit(1)
-    chosen = final.tuning if final.is_faster else default_tuning(device)
     print(f"{chosen}: stored in {store_tuning(device, chosen)}" if store else f"{chosen}: not stored, as asked")
 
 
@@ -102,7 +107,7 @@ def trial_row(trial: Trial, shape: Shape) -> tuple[str, ...]:
 
 
 def verdict(final: Trial) -> str:
-    """Say what came of the final between the fastest candidate and the default."""
+    """Say what came of the final between a candidate and the default."""
     if not final.ratios:
         return "nothing is faster than the default"
     wins = sum(ratio < 1 for ratio in final.ratios)
