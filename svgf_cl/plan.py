@@ -12,14 +12,14 @@ from svgf_cl.device import programs
 from svgf_cl.device.arguments import AfterPass
 from svgf_cl.device.buffers import Buffers
 from svgf_cl.device.launch import Argument, Grid, Launch
-from svgf_cl.device.layout import Layout, rounded_up
+from svgf_cl.device.layout import Layout
 from svgf_cl.device.memory import TURNS
 from svgf_cl.device.opencl_errors import allocate
 from svgf_cl.device.tuning import Tuning
 from svgf_cl.errors import SvgfError
 from svgf_cl.filters.pipeline import Access, Buffer, Pipeline, Resource
 from svgf_cl.filters.stages import Stage, stages
-from svgf_cl.schedule import IN_PLACE, Schedule, Step
+from svgf_cl.schedule import IN_PLACE, Schedule, Step, whole_groups
 
 
 @dataclass(frozen=True)
@@ -191,11 +191,6 @@ def launch(schedule: Schedule, step: Step, memory: Mapping[str, cl.Buffer], at: 
     fixed: dict[str, Argument] = {**step.values, **memory}
     work_group = fitting(schedule.tuning.work_group, kernel, device)
     return Launch(entry, kernel, fixed, whole_groups(step.work_items, work_group), work_group)
-
-
-def whole_groups(work_items: Grid, work_group: Grid) -> Grid:
-    """So many work-items, rounded up to whole work-groups; kernels skip those outside the image."""
-    return rounded_up(work_items[0], work_group[0]), rounded_up(work_items[1], work_group[1])
 
 
 def fitting(work_group: Grid, kernel: cl.Kernel, device: cl.Device) -> Grid:

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from svgf_cl.device.launch import Grid, scalar_arguments
-from svgf_cl.device.layout import HALO, Layout
+from svgf_cl.device.layout import HALO, Layout, rounded_up
 from svgf_cl.device.memory import Memory
 from svgf_cl.device.memory_plan import memory_slots
 from svgf_cl.device.programs import Define
@@ -132,3 +132,8 @@ class Schedule:
         written = self.layout.every(entry.spacing)
         work_items = written.vectors(self.tuning.vector_width, entry.row_step)
         return Step(entry, {name: layouts[name].size for name in entry.sizes}, work_items)
+
+
+def whole_groups(work_items: Grid, work_group: Grid) -> Grid:
+    """So many work-items, rounded up to whole work-groups; kernels skip those outside the image."""
+    return rounded_up(work_items[0], work_group[0]), rounded_up(work_items[1], work_group[1])
