@@ -146,6 +146,12 @@ size_t json_member_size(const json *object, const char *name) { return size(json
 
 size_t json_element_size(const json *list, size_t place) { return size(json_element(list, place)); }
 
+const char *json_text(const json *value) {
+    if (value->kind != JSON_STRING)
+        die("JSON: expected a text%s%s", value->name ? " as " : "", value->name ? value->name : "");
+    return value->text;
+}
+
 size_t json_count(const json *list) {
     size_t count = 0;
     for (const json *each = list->first; each; each = each->next) ++count;

@@ -25,6 +25,9 @@ const json *json_element(const json *list, size_t place);
 size_t json_member_size(const json *object, const char *name);
 size_t json_element_size(const json *list, size_t place);
 
+/* A string; die() for anything else. */
+const char *json_text(const json *value);
+
 /* How many elements an array or object has. */
 size_t json_count(const json *list);
 

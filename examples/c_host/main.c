@@ -35,7 +35,7 @@ static cl_device_id find_device(void) {
 
 /* The name of the file of an input. */
 static const char *name_of(char *name, int number, const json *input) {
-    snprintf(name, LONGEST_NAME, "%04d.%s.raw", number, json_member(input, "name")->text);
+    snprintf(name, LONGEST_NAME, "%04d.%s.raw", number, json_text(json_member(input, "name")));
     return name;
 }
 

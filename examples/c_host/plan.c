@@ -38,7 +38,7 @@ static void load_constants(const plan *p) {
     for (const json *each = json_member(p->json, "constants")->first; each; each = each->next, ++next) {
         const size_t bytes = json_member_size(each, "bytes");
         void *values = take(bytes);
-        read_exactly(p->folder, json_member(each, "file")->text, values, bytes);
+        read_exactly(p->folder, json_text(json_member(each, "file")), values, bytes);
         check(clEnqueueWriteBuffer(p->queue, *next, CL_TRUE, 0, bytes, values, 0, NULL, NULL), "clEnqueueWriteBuffer");
         free(values);
     }
@@ -48,8 +48,8 @@ static cl_program build(const plan *p, const char *name) {
     char options[LONGEST_OPTIONS] = "", *source = read_text(p->folder, name);
     const char *sources = source;
     for (const json *each = json_member(p->json, "build_options")->first; each; each = each->next) {
-        if (strlen(options) + strlen(each->text) + 2 > sizeof options) die("plan.json: too many build_options");
-        strcat(strcat(options, each->text), " ");
+        if (strlen(options) + strlen(json_text(each)) + 2 > sizeof options) die("plan.json: too many build_options");
+        strcat(strcat(options, json_text(each)), " ");
     }
     cl_int error;
     cl_program program = clCreateProgramWithSource(p->context, 1, &sources, NULL, &error);
@@ -65,7 +65,7 @@ static cl_program build(const plan *p, const char *name) {
 
 /* Sets an argument for one turn. Says whether it is the frame's number, which every frame sets anew. */
 static int set_argument(const plan *p, cl_kernel kernel, cl_uint index, const json *argument, size_t turn) {
-    const char *kind = json_member(argument, "kind")->text;
+    const char *kind = json_text(json_member(argument, "kind"));
     cl_int error, whole[4];
     if (strcmp(kind, "frame_number") == 0) return 1;
     if (strcmp(kind, "memory") == 0) {
@@ -93,7 +93,7 @@ static int set_argument(const plan *p, cl_kernel kernel, cl_uint index, const js
 }
 
 static void prepare(const plan *p, launch *made, const json *described, cl_program program) {
-    const char *name = json_member(described, "kernel")->text;
+    const char *name = json_text(json_member(described, "kernel"));
     made->frame_number = -1;
     for (size_t turn = 0; turn < TURNS; ++turn) {
         cl_int error, index = 0;
@@ -119,7 +119,7 @@ plan plan_open(const char *folder, cl_device_id device) {
     plan p = {.folder = folder, .device = device, .text = read_text(folder, "plan.json")};
     const char *where;
     p.json = json_read(p.text, &where);
-    if (!p.json) die("%s/plan.json: expected JSON, got %.20s", folder, where);
+    if (!p.json) die("%s/plan.json: expected JSON, got something else at byte %ld", folder, (long)(where - p.text));
     if (json_member_size(p.json, "format") != FORMAT) die("%s/plan.json: expected format %d", folder, FORMAT);
     cl_int error;
     p.context = clCreateContext(NULL, 1, &p.device, NULL, NULL, &error);
@@ -133,7 +133,7 @@ plan plan_open(const char *folder, cl_device_id device) {
     const json *names = json_member(p.json, "programs"), *launches = json_member(p.json, "launches");
     cl_program *programs = take(sizeof *programs * json_count(names));
     size_t count = 0;
-    for (const json *each = names->first; each; each = each->next) programs[count++] = build(&p, each->text);
+    for (const json *each = names->first; each; each = each->next) programs[count++] = build(&p, json_text(each));
     launch *next = p.launches = take(sizeof *p.launches * json_count(launches));
     for (const json *each = launches->first; each; each = each->next)
         prepare(&p, next++, each, programs[json_member_size(each, "program")]);

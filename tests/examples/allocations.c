@@ -1,5 +1,5 @@
-/* Counts what the host in C allocates: linked with -Wl,--wrap for each function below. Prints the number so far whenever
-   a picture is read, which is once a frame. */
+/* Counts what the host in C allocates: linked with -Wl,--wrap for each function below. Prints the number so far
+   whenever a picture is read, which is once a frame. */
 #include <CL/cl.h>
 #include <stdio.h>
 #include <stdlib.h>
