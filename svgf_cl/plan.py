@@ -19,7 +19,7 @@ from svgf_cl.device.tuning import Tuning
 from svgf_cl.errors import SvgfError
 from svgf_cl.filters.pipeline import Access, Buffer, Pipeline, Resource
 from svgf_cl.filters.stages import Stage, stages
-from svgf_cl.schedule import IN_PLACE, Schedule, Step, whole_groups
+from svgf_cl.schedule import IN_PLACE, Schedule, ScheduledPass, whole_groups
 
 
 @dataclass(frozen=True)
@@ -156,12 +156,12 @@ class Plan:
         constants, found = uploaded(self._at.queue, schedule.pipeline), []
         for _ in range(TURNS):
             self._buffers.begin_frame()
-            bound = [fixed | self._own(step) for step, fixed in zip(schedule.steps, constants, strict=True)]
-            found.append(tuple(launch(schedule, *each, self._at) for each in zip(schedule.steps, bound, strict=True)))
+            bound = [fixed | self._own(each) for each, fixed in zip(schedule.passes, constants, strict=True)]
+            found.append(tuple(launch(schedule, *each, self._at) for each in zip(schedule.passes, bound, strict=True)))
         return found
 
-    def _own(self, step: Step) -> dict[str, cl.Buffer]:
-        return {name: self._buffers[of] for name, of in step.own.items()}
+    def _own(self, scheduled: ScheduledPass) -> dict[str, cl.Buffer]:
+        return {name: self._buffers[of] for name, of in scheduled.own.items()}
 
 
 def uploaded(queue: cl.CommandQueue, pipeline: Pipeline) -> list[dict[str, cl.Buffer]]:
@@ -174,23 +174,23 @@ def uploaded(queue: cl.CommandQueue, pipeline: Pipeline) -> list[dict[str, cl.Bu
     return found
 
 
-def launch(schedule: Schedule, step: Step, memory: Mapping[str, cl.Buffer], at: Workplace) -> Launch:
-    """A step of a schedule made ready to run.
+def launch(schedule: Schedule, scheduled: ScheduledPass, memory: Mapping[str, cl.Buffer], at: Workplace) -> Launch:
+    """A pass of a schedule made ready to run.
 
     Parameters
     ----------
     schedule : Schedule
-    step : Step
-        One of its steps.
+    scheduled : ScheduledPass
+        One of its passes.
     memory : mapping of str to pyopencl.Buffer
         Its constant arrays and the denoiser's buffers, by the kernel's names.
     at : Workplace
     """
-    entry, device = step.entry, at.queue.device
+    entry, device = scheduled.entry, at.queue.device
     kernel = cl.Kernel(programs.build(at.queue.context, device, entry.source, schedule.defines), entry.kernel)
-    fixed: dict[str, Argument] = {**step.values, **memory}
+    fixed: dict[str, Argument] = {**scheduled.values, **memory}
     work_group = fitting(schedule.tuning.work_group, kernel, device)
-    return Launch(entry, kernel, fixed, whole_groups(step.work_items, work_group), work_group)
+    return Launch(entry, kernel, fixed, whole_groups(scheduled.work_items, work_group), work_group)
 
 
 def fitting(work_group: Grid, kernel: cl.Kernel, device: cl.Device) -> Grid:

@@ -33,7 +33,7 @@ class ArrayType:
 
 
 @dataclass(frozen=True, eq=False)
-class Step:
+class ScheduledPass:
     """A pass of a schedule.
 
     Parameters
@@ -107,23 +107,23 @@ class Schedule:
         """The user's arrays by name: those that are read, then `OUT`."""
         channels = {
             each.of: each.uses[0].quantity.channels
-            for step in self.steps
-            for each in step.entry.accesses
+            for scheduled in self.passes
+            for each in scheduled.entry.accesses
             if isinstance(each.of, str)
         }
         return {name: self._array(name, channels[name]) for name in (*self.pipeline.fields, OUT)}
 
     @cached_property
-    def steps(self) -> tuple[Step, ...]:
+    def passes(self) -> tuple[ScheduledPass, ...]:
         """The passes, in order."""
-        return tuple(map(self._step, self.pipeline.passes))
+        return tuple(map(self._scheduled, self.pipeline.passes))
 
     def _array(self, name: str, channels: int) -> ArrayType:
         plain = CHANNELS.get(name) == (0,)
         shape = self.layout.height, self.layout.width, *(() if plain else (channels,))
         return ArrayType(shape, np.dtype(element_type(name)))
 
-    def _step(self, entry: Pass) -> Step:
+    def _scheduled(self, entry: Pass) -> ScheduledPass:
         layouts = {
             "size": self.layout,
             "coarse_size": self.layout.every(entry.coarse_spacing),
@@ -131,7 +131,7 @@ class Schedule:
         }
         written = self.layout.every(entry.spacing)
         work_items = written.vectors(self.tuning.vector_width, entry.row_step)
-        return Step(entry, {name: layouts[name].size for name in entry.sizes}, work_items)
+        return ScheduledPass(entry, {name: layouts[name].size for name in entry.sizes}, work_items)
 
 
 def whole_groups(work_items: Grid, work_group: Grid) -> Grid:

@@ -146,13 +146,13 @@ class TilePlan:
         pipeline, at = self.pipeline, self._at
         schedule = Schedule(pipeline, at.layout, at.tuning, self._past_layout)
         constants = uploaded(self._queue, pipeline)
-        for step, fixed, margin in zip(schedule.steps, constants, margins(pipeline), strict=True):
-            past = pipeline.past_of(step.entry)
+        for scheduled, fixed, margin in zip(schedule.passes, constants, margins(pipeline), strict=True):
+            past = pipeline.past_of(scheduled.entry)
             arguments = {each.argument for each in past}
-            own = {name: (self._past if name in arguments else self._buffers)[of] for name, of in step.own.items()}
-            ready = launch(schedule, step, fixed | own, at)
+            own = {name: (self._past if name in arguments else self._buffers)[of] for name, of in scheduled.own.items()}
+            ready = launch(schedule, scheduled, fixed | own, at)
             if past:
-                reach = Reach.of(step.entry)
+                reach = Reach.of(scheduled.entry)
                 yield Step(ready, [each.resource for each in past], margin + reach.beside, reach)
             else:
                 yield Step(ready)

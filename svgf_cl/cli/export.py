@@ -74,7 +74,7 @@ def export(
     mebibytes = sum(schedule.memory.sizes) / 2**20
     print(
         f"{output}: {settings.name} for {extent(shape)} frames with {', '.join(schedule.pipeline.fields)}: "
-        f"{len(schedule.steps)} launches, {mebibytes:.0f} MiB of device memory; {tuning}"
+        f"{len(schedule.passes)} launches, {mebibytes:.0f} MiB of device memory; {tuning}"
     )
 
 

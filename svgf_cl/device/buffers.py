@@ -49,7 +49,7 @@ class Buffers:
         return sum(buffer.size for buffer in (*self._pieces, *self._copies.values()))
 
     def __getitem__(self, buffer: Buffer) -> cl.Buffer:
-        return self._pieces[self._planned.pieces(buffer)[self.turn]]
+        return self._pieces[self._planned.turns[self.turn][self._planned.slot_of[buffer]]]
 
     def begin_frame(self) -> None:
         """Turn what was written in the last frame into history."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import asdict
 from importlib.metadata import version
 from typing import Any
@@ -16,7 +15,7 @@ from svgf_cl.export.preprocess import preprocessed
 from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.pipeline import OUT, Buffer, Pipeline, Quantity
 from svgf_cl.fingerprint import library_version
-from svgf_cl.schedule import IN_PLACE, Schedule, Step, whole_groups
+from svgf_cl.schedule import IN_PLACE, Schedule, ScheduledPass, whole_groups
 
 FORMAT = 1  # of the document: raised by a change that a host has to know of
 SCHEMA = "plan.schema.json"
@@ -33,7 +32,6 @@ def document(schedule: Schedule, settings: Filter) -> Entry:
     settings : Filter
         The filter whose pipeline it is.
     """
-    constants = list(constant_arrays(schedule.pipeline))
     return {
         "$schema": SCHEMA,
         "format": FORMAT,
@@ -54,7 +52,7 @@ def document(schedule: Schedule, settings: Filter) -> Entry:
         "memory": [{"bytes": size} for size in schedule.memory.sizes],
         "buffers": [of_buffer(buffer, schedule) for buffer in schedule.memory.slot_of],
         "cut": [of_fill(fill, schedule.memory) for fill in schedule.memory.fills(schedule.pipeline.lasting)],
-        "launches": [of_step(step, schedule, constants) for step in schedule.steps],
+        "launches": [of_launch(scheduled, schedule) for scheduled in schedule.passes],
     }
 
 
@@ -103,7 +101,7 @@ def of_buffer(buffer: Buffer, schedule: Schedule) -> Entry:
     """A buffer: what it holds, where, and from which launch to which it is needed."""
     resource, memory = buffer.resource, schedule.memory
     layout = schedule.layout.every(resource.spacing)
-    used = [number for number, step in enumerate(schedule.steps) if buffer in step.own.values()]
+    used = [number for number, scheduled in enumerate(schedule.passes) if buffer in scheduled.own.values()]
     return {
         "name": resource.name,
         "is_previous": buffer.previous,
@@ -144,37 +142,35 @@ def of_fill(fill: Fill, memory: Memory) -> Entry:
     }
 
 
-def of_step(step: Step, schedule: Schedule, constants: list[str]) -> Entry:
+def of_launch(scheduled: ScheduledPass, schedule: Schedule) -> Entry:
     """A launch."""
     group = schedule.tuning.work_group
     return {
-        "label": step.entry.label,
-        "program": sources(schedule.pipeline).index(step.entry.source),
-        "kernel": step.entry.kernel,
-        "arguments": [{"name": name, **of_argument(name, step, schedule, constants)} for name in step.entry.arguments],
-        "work_items": list(step.work_items),
+        "label": scheduled.entry.label,
+        "program": sources(schedule.pipeline).index(scheduled.entry.source),
+        "kernel": scheduled.entry.kernel,
+        "arguments": [{"name": name, **of_argument(name, scheduled, schedule)} for name in scheduled.entry.arguments],
+        "work_items": list(scheduled.work_items),
         "local_size": list(group),
-        "global_size": list(whole_groups(step.work_items, group)),
+        "global_size": list(whole_groups(scheduled.work_items, group)),
     }
 
 
-def of_argument(name: str, step: Step, schedule: Schedule, constants: list[str]) -> Entry:
+def of_argument(name: str, scheduled: ScheduledPass, schedule: Schedule) -> Entry:
     """What a kernel is given as one of its arguments."""
-    if name in step.own:
-        buffer = step.own[name]
+    if name in scheduled.own:
+        buffer = scheduled.own[name]
         return {"kind": "memory", "memory": list(schedule.memory.pieces(buffer)), "buffer": buffer.resource.name}
-    if name in step.user:
-        return {"kind": "array", "array": list(schedule.arrays).index(step.user[name])}
-    if name in step.entry.arrays:
-        return {"kind": "constant", "constant": constants.index(constant_file(step.entry.label, name))}
-    if name in step.entry.per_frame and name not in IN_PLACE:
+    if name in scheduled.user:
+        return {"kind": "array", "array": list(schedule.arrays).index(scheduled.user[name])}
+    if name in scheduled.entry.arrays:
+        files = list(constant_arrays(schedule.pipeline))
+        return {"kind": "constant", "constant": files.index(constant_file(scheduled.entry.label, name))}
+    if name in IN_PLACE:
+        return of_value(np.int32(IN_PLACE[name]))
+    if name in scheduled.entry.per_frame:
         return {"kind": name}
-    return of_value({**step.values, **of_whole_frames()}[name])
-
-
-def of_whole_frames() -> Mapping[str, np.int32]:
-    """Numbers that change with the frame, but not where frames are whole."""
-    return {name: np.int32(value) for name, value in IN_PLACE.items()}
+    return of_value(scheduled.values[name])
 
 
 def of_value(value: np.ndarray | np.generic) -> Entry:

@@ -20,15 +20,15 @@ LAYOUT = Layout(*SHAPE)
 
 @given(every_pipeline)
 def test_every_argument_is_one_thing(pipeline: Pipeline) -> None:
-    for step in Schedule(pipeline, LAYOUT, GPU_TUNING).steps:
-        kinds = [step.values, step.own, step.user, step.entry.arrays, step.entry.per_frame]
-        assert sorted(name for kind in kinds for name in kind) == sorted(step.entry.arguments)
+    for each in Schedule(pipeline, LAYOUT, GPU_TUNING).passes:
+        kinds = [each.values, each.own, each.user, each.entry.arrays, each.entry.per_frame]
+        assert sorted(name for kind in kinds for name in kind) == sorted(each.entry.arguments)
 
 
 @given(every_pipeline)
-def test_every_buffer_of_a_step_has_memory(pipeline: Pipeline) -> None:
+def test_every_buffer_of_a_pass_has_memory(pipeline: Pipeline) -> None:
     schedule = Schedule(pipeline, LAYOUT, GPU_TUNING)
-    used = {buffer for step in schedule.steps for buffer in step.own.values()}
+    used = {buffer for each in schedule.passes for buffer in each.own.values()}
     assert used <= {*schedule.memory.slot_of}
 
 
@@ -47,8 +47,8 @@ def test_arrays_are_what_frames_have() -> None:
 
 def test_the_past_may_lie_in_another_layout() -> None:
     past = Layout(90, 91)
-    steps = Schedule(Kalman().pipeline(Inputs()), LAYOUT, GPU_TUNING, past).steps
-    sizes = [step.sizes["past_size"] for step in steps if "past_size" in step.sizes]
+    passes = Schedule(Kalman().pipeline(Inputs()), LAYOUT, GPU_TUNING, past).passes
+    sizes = [each.sizes["past_size"] for each in passes if "past_size" in each.sizes]
     assert sizes
     for size in sizes:
         np.testing.assert_array_equal(size, past.size)
@@ -57,11 +57,11 @@ def test_the_past_may_lie_in_another_layout() -> None:
 @pytest.mark.parametrize("tuning", [CPU_TUNING, GPU_TUNING], ids=str)
 def test_work_items_reach_every_pixel_that_is_written(tuning) -> None:
     schedule = Schedule(Kalman().pipeline(Inputs()), LAYOUT, tuning)
-    for step in schedule.steps:
-        written = LAYOUT.every(step.entry.spacing)
-        along, down = step.work_items
+    for each in schedule.passes:
+        written = LAYOUT.every(each.entry.spacing)
+        along, down = each.work_items
         assert (along - 1) * tuning.vector_width < written.width <= along * tuning.vector_width
-        assert written.height <= down < written.height + step.entry.row_step
+        assert written.height <= down < written.height + each.entry.row_step
 
 
 def test_work_items_are_rounded_up_to_whole_groups() -> None:
