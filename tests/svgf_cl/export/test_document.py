@@ -11,6 +11,7 @@ import jsonschema
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import settings as effort
 
 from svgf_cl import Inputs, Kalman, Lbf, Settings
 from svgf_cl.device.layout import Layout
@@ -44,6 +45,7 @@ def test_the_schema_is_one() -> None:
     VALIDATOR.check_schema(VALIDATOR.schema)
 
 
+@effort(deadline=None, max_examples=25)
 @given(every_filter, every_inputs)
 def test_it_follows_its_schema_and_names_what_is_there(settings: Filter, inputs: Inputs) -> None:
     plan = document_of(settings, inputs)
@@ -62,6 +64,7 @@ def test_it_follows_its_schema_and_names_what_is_there(settings: Filter, inputs:
     assert not any(array["is_output"] for array in inputs_)
 
 
+@effort(deadline=None, max_examples=25)
 @given(every_filter, every_inputs)
 def test_buffers_that_share_memory_have_it_one_after_another(settings: Filter, inputs: Inputs) -> None:
     """Or the one is written where the other is read, pixel by pixel, in one launch."""
