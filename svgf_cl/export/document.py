@@ -125,6 +125,7 @@ def of_quantity(quantity: Quantity, offset: int) -> Entry:
         "type": quantity.format.dtype.name,
         "channels": quantity.channels,
         "signals": quantity.signals,
+        "is_light": quantity.is_light,
         "offset": offset,
     }
 

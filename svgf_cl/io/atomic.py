@@ -67,7 +67,7 @@ def folder_written_whole(path: Path) -> Iterator[Path]:
         for file in aside.rglob("*"):
             if file.is_file():
                 _sync(file)
-        check_new(path)  # renamed to an empty one it would take its place
+        check_new(path)  # a rename would replace an empty folder
         aside.rename(path)
     except BaseException as error:
         shutil.rmtree(aside, ignore_errors=True)

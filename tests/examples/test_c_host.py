@@ -33,7 +33,7 @@ COUNTED = ("malloc", "calloc", "realloc", "clCreateBuffer", "clCreateKernel", "c
 def compiled(folder: Path, *arguments: str) -> Path:
     """The host, built in a folder of its own."""
     copied(folder)
-    subprocess.run(["make", "-s", "-C", folder, "CC=cc", *arguments], check=True)
+    subprocess.run(["make", "-s", "-C", folder, *arguments], check=True)
     return folder / "svgf_host"
 
 
@@ -98,6 +98,14 @@ def test_pictures_are_those_of_a_denoiser(case: str, host: Path, queue: cl.Comma
 def plan_for(folder: Path, settings: Filter, frame: Frame, tuning: Tuning) -> None:
     pipeline = settings.pipeline(Inputs.of(frame))
     write_plan(folder, Schedule(pipeline, layout_of(SHAPE, tuning, settings), tuning), settings)
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_compilers_have_nothing_to_say(compiler: str, tmp_path: Path) -> None:
+    if shutil.which(compiler) is None:
+        missing(f"no {compiler}: apt-get install {compiler}")
+    built = compiled(tmp_path / "c_host", f"CC={compiler}", "CFLAGS=-O2 -Wconversion -Wshadow -Wcast-qual")
+    assert built.exists()
 
 
 def test_wrong_input_is_named(host: Path, queue: cl.CommandQueue, tmp_path: Path) -> None:
