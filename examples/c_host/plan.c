@@ -66,29 +66,30 @@ static cl_program build(const plan *p, const char *name) {
 /* Sets an argument for one turn. Says whether it is the frame's number, which every frame sets anew. */
 static int set_argument(const plan *p, cl_kernel kernel, cl_uint index, const json *argument, size_t turn) {
     const char *kind = json_text(json_member(argument, "kind"));
-    cl_int error, whole[4];
+    cl_float single;
+    cl_int whole[4];
+    const void *value = whole;
+    size_t size = sizeof(cl_mem);
     if (strcmp(kind, "frame_number") == 0) return 1;
     if (strcmp(kind, "memory") == 0) {
-        const size_t piece = json_element_size(json_member(argument, "memory"), turn);
-        error = clSetKernelArg(kernel, index, sizeof(cl_mem), &p->memory[piece]);
+        value = &p->memory[json_element_size(json_member(argument, "memory"), turn)];
     } else if (strcmp(kind, "array") == 0) {
-        error = clSetKernelArg(kernel, index, sizeof(cl_mem), &p->arrays[json_member_size(argument, "array")]);
+        value = &p->arrays[json_member_size(argument, "array")];
     } else if (strcmp(kind, "constant") == 0) {
-        error = clSetKernelArg(kernel, index, sizeof(cl_mem), &p->constants[json_member_size(argument, "constant")]);
+        value = &p->constants[json_member_size(argument, "constant")];
     } else if (strcmp(kind, "float") == 0) {
-        const cl_float single = (cl_float)json_member(argument, "value")->number;
-        error = clSetKernelArg(kernel, index, sizeof single, &single);
+        single = (cl_float)json_member(argument, "value")->number;
+        value = &single, size = sizeof single;
     } else if (strcmp(kind, "int") == 0) {
         whole[0] = (cl_int)json_member(argument, "value")->number;
-        error = clSetKernelArg(kernel, index, sizeof whole[0], whole);
+        size = sizeof whole[0];
     } else if (strcmp(kind, "int4") == 0) {
         for (size_t i = 0; i < 4; ++i) whole[i] = (cl_int)json_element(json_member(argument, "value"), i)->number;
-        error = clSetKernelArg(kernel, index, sizeof whole, whole);
+        size = sizeof whole;
     } else {
         die("plan.json: expected an argument of a known kind, got %s", kind);
-        return 0;
     }
-    check(error, "clSetKernelArg");
+    check(clSetKernelArg(kernel, index, size, value), "clSetKernelArg");
     return 0;
 }
 
