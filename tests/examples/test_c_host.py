@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -67,7 +68,7 @@ def run(host: Path, queue: cl.CommandQueue, *arguments: Path | str) -> subproces
 CASES = {
     "default": (Kalman(), FULL, None),
     "two signals": (Kalman(taa=True), SPLIT, GPU_TUNING),
-    "svgf": (Settings(taa=True), FULL, Tuning(vector_width=4, work_group=(64, 1))),
+    "svgf": (Settings(taa=True), FULL, Tuning(vector_width=4, work_group=(1024, 64))),  # which no device can run
     "network": (Lbf(), PLAIN, GPU_TUNING),
 }
 
@@ -82,7 +83,8 @@ def test_pictures_are_those_of_a_denoiser(case: str, host: Path, queue: cl.Comma
     (tmp_path / "out").mkdir()
     ran = run(host, queue, tmp_path / "plan", tmp_path / "frames", tmp_path / "out", str(CUT))
     assert ran.returncode == 0, ran.stderr
-    with Denoiser(SHAPE, settings=settings, queue=queue, tuning=tuning) as den:
+    other_groups = replace(tuning, work_group=(16, 2))  # the result does not depend on them
+    with Denoiser(SHAPE, settings=settings, queue=queue, tuning=other_groups) as den:
         for number, frame in enumerate(frames, start=1):
             if number == CUT:
                 den.reset()
