@@ -10,13 +10,15 @@ import typer
 from svgf_cl.cli.options import FilterName, SettingTexts, Size, parse_settings, parse_size
 from svgf_cl.device.arguments import layout_of
 from svgf_cl.device.devices import default_device
+from svgf_cl.device.layout import Layout
 from svgf_cl.device.tuning import CPU_TUNING, GPU_TUNING, Tuning, best_tuning
 from svgf_cl.errors import SvgfError, shown
 from svgf_cl.export.folder import write_plan
 from svgf_cl.export.preprocess import check_preprocessor
 from svgf_cl.filters import DEFAULT
+from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.signals import COLOR, DIRECT, INDIRECT, Inputs
-from svgf_cl.frame import extent
+from svgf_cl.frame import Shape, extent
 from svgf_cl.io.atomic import check_new, output_folder
 from svgf_cl.schedule import Schedule
 
@@ -69,7 +71,7 @@ def export(
     check_new(output)
     output_folder(output.parent)
     tuning = parse_kind(kind)
-    schedule = Schedule(settings.pipeline(inputs), layout_of(shape, tuning, settings), tuning)
+    schedule = Schedule(settings.pipeline(inputs), parse_layout(shape, tuning, settings), tuning)
     write_plan(output, schedule, settings)
     mebibytes = sum(schedule.memory.sizes) / 2**20
     print(
@@ -91,6 +93,16 @@ def parse_fields(text: str, motion: int) -> Inputs:
         raise SvgfError(f"--fields: expected both of direct and indirect, or neither, got {split[0].field} alone")
     given = {name: name in names for name in ("albedo", "emission", "id")}
     return Inputs(signals=split or (COLOR,), motion=motion, **given)
+
+
+def parse_layout(shape: Shape, tuning: Tuning, settings: Filter) -> Layout:
+    """The layout of an image; `SvgfError` for one that is too large to be worked on as a whole, as plans do."""
+    try:
+        return layout_of(shape, tuning, settings)
+    except SvgfError as error:
+        raise SvgfError(
+            f"--size: expected frames whose buffers indices of 32 bits reach (about 11000x11000), got {extent(shape)}"
+        ) from error
 
 
 def parse_kind(text: str | None) -> Tuning:
