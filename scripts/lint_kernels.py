@@ -42,7 +42,7 @@ WARNINGS = (
 )
 
 ROOT = Path(__file__).resolve().parent.parent
-FORMATTED = ("kernels/*.cl", "kernels/*.clh", "svgf_cl/bench/*.cl", "examples/*.cl")
+FORMATTED = ("kernels/*.cl", "kernels/*.clh", "svgf_cl/bench/*.cl", "examples/*.cl", "examples/c_host/*.[ch]")
 
 
 def inputs() -> Iterator[Inputs]:

@@ -54,7 +54,7 @@ def wheel(tmp_path_factory) -> Path:
 def test_wheel_holds_kernels_types_pages_and_license(wheel):
     names = set(zipfile.ZipFile(wheel).namelist())
     assert {f"svgf_cl/kernels/{path.name}" for path in (ROOT / "kernels").glob("*.cl*")} <= names
-    assert {"svgf_cl/py.typed", "svgf_cl/denoiser.py"} <= names
+    assert {"svgf_cl/py.typed", "svgf_cl/denoiser.py", "svgf_cl/export/plan.schema.json"} <= names
     assert {f"svgf_cl/compare/page.{kind}" for kind in ("html", "css", "js")} <= names
     assert "svgf_cl_tracer/builtin/cornell.py" in names
     (declared,) = (name for name in names if name.endswith("entry_points.txt"))

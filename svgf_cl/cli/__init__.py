@@ -14,7 +14,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from svgf_cl import __version__
-from svgf_cl.cli import bench, check, compare, denoise, devices, formats, tune
+from svgf_cl.cli import bench, check, compare, denoise, devices, export, formats, tune
 from svgf_cl.cli.signals import terminated_like_interrupted
 from svgf_cl.errors import SvgfError, one_line
 
@@ -26,13 +26,14 @@ COMMANDS: dict[str, Command] = {
     "check": check.check,
     "denoise": denoise.denoise,
     "compare": compare.compare,
+    "export": export.export,
     "bench": bench.bench,
     "tune": tune.tune,
 }
 # Installed packages may declare more: a function each, under the command's name.
 GROUP = "svgf_cl.commands"
 # As the help lists them; any others come behind.
-ORDER = ("devices", "demo", "scenes", "render", "formats", "check", "denoise", "compare", "bench", "tune")
+ORDER = ("devices", "demo", "scenes", "render", "formats", "check", "denoise", "compare", "export", "bench", "tune")
 INTERRUPTED = 130  # as a shell has it of a program that Ctrl-C ends; so does SIGTERM here
 # What a command says that takes whatever comes.
 ANYTHING = {"ignore_unknown_options": True, "allow_extra_args": True}

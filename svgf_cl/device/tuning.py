@@ -102,6 +102,8 @@ class Tuning:
 
 # What suits most GPUs: a vector is one pixel, a work-group a tile of whole warps, and exp2 a single instruction.
 GPU_TUNING = Tuning(vector_width=1, work_group=(32, 4), exponential="exp2")
+# What suits most CPUs of today, whose native vectors are of 8 floats or more.
+CPU_TUNING = Tuning(vector_width=16, work_group=CPU_WORK_GROUP)
 
 
 def best_tuning(device: cl.Device) -> Tuning:
