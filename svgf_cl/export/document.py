@@ -22,6 +22,8 @@ SCHEMA = "plan.schema.json"
 
 Entry = dict[str, Any]  # what JSON calls an object
 
+PYTHONS_OWN = ("pinned_copies",)  # of a tuning: how numpy arrays reach the device
+
 
 def document(schedule: Schedule, settings: Filter) -> Entry:
     """The document of a schedule of whole frames.
@@ -37,7 +39,7 @@ def document(schedule: Schedule, settings: Filter) -> Entry:
         "format": FORMAT,
         "made_by": {"svgf_cl": version("svgf_cl"), "code": library_version()},
         "filter": {"name": settings.name, "settings": asdict(settings)},
-        "tuning": asdict(schedule.tuning),
+        "tuning": {name: value for name, value in asdict(schedule.tuning).items() if name not in PYTHONS_OWN},
         "image": {"width": schedule.layout.width, "height": schedule.layout.height, "halo": HALO},
         "build_options": list(programs.OPTIONS),
         "programs": [program_file(source) for source in sources(schedule.pipeline)],

@@ -53,7 +53,7 @@ def test_for_a_kind_of_device_none_is_needed(tmp_path: Path, monkeypatch: pytest
         (("--fields", "direct"), "--fields: expected both of direct and indirect, or neither, got direct alone"),
         (("--motion", "4"), "--motion"),
         (("--filter", "svg"), "--filter: expected kalman or"),
-        (("--set", "alpha=1"), "--set: expected NAME=VALUE with a name out of"),
+        (("--set", "alpha=1"), "--set: expected NAME=VALUE with a name among"),
         (("--set", "iterations=9"), "iterations: expected a whole number in 1..5, got 9"),
         (("--for", "fpga"), "--for: expected gpu or cpu, got 'fpga'"),
     ],
