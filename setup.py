@@ -15,6 +15,7 @@ setup(
     package_data={
         "svgf_cl.kernels": ["*.cl", "*.clh"],
         "svgf_cl.bench": ["*.cl", "*.html"],
+        "svgf_cl.export": ["*.json"],
         "svgf_cl.compare": ["*.html", "*.css", "*.js"],
         "svgf_cl.view": ["*.html", "*.css", "*.js"],
     },

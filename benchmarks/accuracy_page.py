@@ -45,31 +45,44 @@ HERE, BRIEF = "--here", "--brief"
 
 INTRODUCTION = f"""# Accuracy
 
-Made by `make docs` (`python -m benchmarks.accuracy_page docs/accuracy.md`); do not edit. `make test-all` prints it for
-the machine it runs on.
+Made by `make docs` (`python -m benchmarks.accuracy_page docs/accuracy.md`); do not edit.
+`make test-all` prints this page for the machine it runs on.
 
-Every kernel of SVGF, Kalman, SBF and LBF is given its actual float32 input and held against the same function of
-`svgf_cl/oracle/` in float64, on {FRAMES} frames of {SHAPE[1]}x{SHAPE[0]} each of two sequences: the built-in Cornell
-box (1 sample, moving camera), and unrelated numbers in every field, with misses, ids and motion of several pixels.
-Direct and indirect light apart, TAA on. Those of SBF and LBF alone see {FEW} frames of {SMALL[1]}x{SMALL[0]} of such
-numbers, without TAA. The largest error of any pixel of any result of a kernel:
+The oracle (`svgf_cl/oracle/`) computes in float64 what the kernels compute in float32.
+This page compares every kernel of SVGF, Kalman, SBF and LBF with the oracle.
+Kernel and oracle get the same float32 input.
 
-- absolute: in the result's own unit (radiance, its square for a variance, or 1);
-- relative: `|got - expected| / (|expected| + {SCALE_SHARE:g} * mean |expected|)`; of a colour the greatest channel
-  counts as its size;
+The input is two sequences of {FRAMES} frames of {SHAPE[1]}x{SHAPE[0]}.
+One is the built-in Cornell box with 1 sample per pixel and a moving camera.
+The other has random numbers in every field, with pixels that hit nothing, ids, and motion of several pixels.
+Direct and indirect light are separate signals, and TAA is on.
+The kernels that only SBF and LBF have get {FEW} frames of {SMALL[1]}x{SMALL[0]} of random numbers, without TAA.
+
+The table has the largest error of any pixel in any result of a kernel:
+
+- absolute: in the unit of the result (radiance, its square for a variance, or 1);
+- relative: `|got - expected| / (|expected| + {SCALE_SHARE:g} * mean |expected|)`;
+  of a colour, `|expected|` is that of its largest channel;
 - ulps: the absolute error in units in the last place of that denominator, as float32.
 
-Where rounding tips a decision (a tap just accepted or just refused) a pixel may be off by more than {DECISION:g},
-relative; such pixels are left out, and their share is in the last column.
+Some kernels decide whether to use a neighbour, and rounding can change this decision.
+Such a pixel may have a relative error above {DECISION:g}.
+The errors leave these pixels out, and the last column is their share.
 
-Why not zero: float32 rounds by half an ULP, 6e-8. 128 times a cosine multiplies that by 128, an exponent of up to 80 by
-as much again, and the polynomial exponential adds 4e-6; the variance sums squares of differences. How much of a change
-is believed (detect, update) goes by a variance of as few as two pixels, which cancels where they are alike.
+The errors are not zero for these reasons:
+
+- float32 rounds by half a unit in the last place, 6e-8.
+- Weights multiply this error: by 128 in a normal's cosine, and by up to 80 in an exponent.
+- The polynomial for the exponential adds 4e-6.
+- The variance sums squares of differences.
+- The kernels detect and update divide by a variance that may come from two pixels only.
+  If these are alike, almost nothing is left of it but rounding.
 """
 
 WHOLE_FILTER = f"""
-The whole filter over a sequence ({PIPELINE_FRAMES} frames of the closed-form room, 160x90), errors building up through
-the history, relative to the picture's mean:
+The next table has the error of the whole filter after {PIPELINE_FRAMES} frames of the closed-form room, 160x90.
+Errors add up through the history.
+They are relative to the picture's mean:
 """
 
 

@@ -179,9 +179,7 @@ def bar_table(results: Results, platforms: Mapping[str, str]) -> Table:
     if INTEL.platform in by_name and POCL in by_name:
         held.append((against_pocl(by_name[POCL]), INTEL.platform, by_name[INTEL.platform]))
     rows = [row for each in held for row in judged(*each)]
-    return Table(
-        "what has to hold; at 1280x720 where no size is told", ("bar", "implementation", "wanted", "measured", ""), rows
-    )
+    return Table("bars; at 1280x720 unless a size is named", ("bar", "implementation", "wanted", "measured", ""), rows)
 
 
 def judged(bar: Bar, platform: str, results: Results) -> Iterator[tuple[str, ...]]:

@@ -27,12 +27,13 @@ INTRODUCTION = """# Checking inputs
 
 Made by `python -m benchmarks.check_inputs`; do not edit.
 
-Most trouble with a denoiser is trouble with what it is given.
-`svgf-cl check FRAMES` looks for it in the frames, before anything is denoised:
+If a denoised picture looks wrong, the input is usually the reason.
+`svgf-cl check FRAMES` looks for mistakes in the frames before anything is denoised:
 
 ```sh
-svgf-cl check out/box                # a table of what is wrong: exit code 1 where anything is
-svgf-cl check out/box -o fields.png  # and a picture of every field, and of where motion leads
+svgf-cl render cornell -o out/box    # frames to check, of a built-in scene
+svgf-cl check out/box                # a table of all mistakes; the exit code is 1 if there are any
+svgf-cl check out/box -o fields.png  # also draws every field, and the previous frame moved by the motion vectors
 ```
 
 ```python
@@ -42,42 +43,50 @@ report = check_sequence(frames)  # Report: findings, unknown, passed
 report = check_frame(frame, previous)
 ```
 
-A finding names the field, what is wrong with it, the figures that show it, what svgf_cl expects, and what to do.
+A finding names the field and the problem, gives the figures that show it, and says what svgf_cl expects and what to do.
 An error spoils the picture.
-A warning costs quality; it is no mistake if you meant it so.
-What the frames cannot tell is listed as not checked, and never as passed: the sign of motion where nothing moves.
-A required field that is missing, or a field of a wrong shape, is refused at once.
-Eight frames of a moving camera are plenty.
+A warning means lower quality; ignore it if the input is meant to be like this.
+Some frames cannot show a mistake: where nothing moves, the sign of motion is unknown.
+The report lists such checks as "not checked", and never as passed.
+A missing required field or a field of a wrong shape is an error at once.
+Eight frames of a moving camera are enough.
 
-`Report.looked_at` says which fields were there to be looked at.
-Some checks need a picture of 10,000 pixels or more; of a smaller one they are listed as not checked.
-Of pictures with more than 240 rows, most checks look at every second or third row and column, and so on.
-`svgf-cl denoise` looks at the first eight frames in the same way and warns; `--no-check` turns that off.
+`Report.looked_at` says which fields the frames have.
+Some checks need a picture of at least 10,000 pixels; in a smaller one they are listed as not checked.
+In a picture with more than 240 rows, most checks read only every second or third row and column, and so on.
+`svgf-cl denoise` checks the first eight frames in the same way and prints warnings; `--no-check` turns that off.
 
-## How it is told
+## How it works
 
-The fields of a frame depend on each other: motion, for example, must lead to the same surface in the frame before.
-For every known mistake there is a way to undo it.
-If the fields go together clearly better after that, the mistake was made.
-A check that relies on a field which is wrong waits until that field is mended.
+The fields of a frame depend on each other.
+For example, motion must lead to the same surface in the previous frame.
+For every known mistake there is a correction.
+If the fields fit together clearly better after the correction, the mistake was made.
+If a check needs a field that is wrong, it is listed as not checked until you correct that field.
 
-- **motion** is right where normals, albedo and steps of depth are found again in the frame before (`check/motion.py`).
-  Jitter is what no camera's movement explains: a rotation and a parallax leave no offset (`check/camera.py`).
-- **depth** is right where planes, told by their normals, are plane (`check/depth.py`).
-- **normals** of the world stay what they are when the camera turns (`check/surfaces.py`); so do **ids**.
-- **albedo and colour** are both linear where neighbours on a surface have colours in the ratio of their albedos, noise
-  averaged out (`check/shading.py`).
-- **fields of one frame** have their edges in the same places (`check/alignment.py`).
-- The rest are plain numbers (`check/values.py`).
+- **Motion** is right if it leads to the same normals, albedo and depth edges in the previous frame (`check/motion.py`).
+  It contains jitter if it has an offset that neither a turn nor a movement of the camera explains (`check/camera.py`).
+- **Depth** is right if neighbours with the same normal lie on one plane (`check/depth.py`).
+- **Normals** in world space and **ids** do not change when the camera turns (`check/surfaces.py`).
+- **Albedo and colour** are both linear if neighbours on a surface have colours in the ratio of their albedos.
+  The noise is averaged out first (`check/shading.py`).
+- **Fields of one frame** have their edges in the same places (`check/alignment.py`).
+- The other checks compare values with their allowed range (`check/values.py`).
 """
 
 TABLE = f"""## What is found
 
-{FRAMES - 1} frames of each built-in scene, {extent(SHAPE)}, 1 sample per pixel, with color, albedo, normal, depth,
-motion, id and emission, from the middle of its sequence; and the closed-form room. Into each go twenty mistakes, one at
-a time. "{FOUND}": found and called by its name, and no other field suspected. "{ALSO}": another one is, too.
-"{UNTOLD}": the report says that it could not be checked. {MISSED}: passed for right. Thresholds were set on
-{", ".join(DEVELOPED)}; false alarms on the other scenes, held out at first, changed some of them since.
+The test uses {FRAMES - 1} frames from the middle of each built-in scene, and of a room computed by formulas (`room`).
+Frames are {extent(SHAPE)} with 1 sample per pixel, and have color, albedo, normal, depth, motion, id and emission.
+Twenty mistakes are made in each scene, one at a time.
+
+- "{FOUND}": the report names this mistake and suspects no other field.
+- "{ALSO}": the report names this mistake, and suspects another field too.
+- "{UNTOLD}": the report lists this check as not checked.
+- {MISSED}: the report does not notice the mistake.
+
+The thresholds of the checks were chosen on {", ".join(DEVELOPED)}.
+The other scenes were first kept apart as a test; later, false alarms on them changed some thresholds.
 """
 
 
@@ -86,7 +95,7 @@ def check_inputs(
         list[str], typer.Argument(metavar="[SCENE]...", help="More scenes: files, or folders with a scene.json.")
     ] = [],  # noqa: B006  # never changed
 ) -> None:
-    """Make twenty mistakes in every built-in scene, and write which are found."""
+    """Make twenty mistakes in every built-in scene, and write which of them are found."""
     columns = {}
     names = [ROOM, *BUILTIN, *scenes]
     for scene in tracked(names, len(names), "checking"):
@@ -97,21 +106,21 @@ def check_inputs(
 
 
 def outcomes(good: Sequence[Taken]) -> dict[str, str]:
-    """What becomes of the good frames, and of each mistake."""
+    """The result for the good frames, and for each mistake."""
     report = check_sequence(taken.frame for taken in good[1:])
     found = {"none": ", ".join(f"{f.field}: {f.what}" for f in report.findings) or "nothing found"}
     return found | {name: outcome(mistake, check_sequence(mistake.made_in(good))) for name, mistake in MISTAKES.items()}
 
 
 def outcome(mistake: Mistake, report: Report) -> str:
-    """Whether a mistake was found, and whether alone; if not, whether the report says that it cannot be told."""
+    """Whether a mistake was found, and found alone; if not, whether the report says that it was not checked."""
     if mistake.named_in(report):
         return FOUND if all(finding.field == mistake.field for finding in report.findings) else ALSO
     return UNTOLD if any(unknown.topic == mistake.check.topic for unknown in report.unknown) else MISSED
 
 
 def table(columns: dict[str, dict[str, str]]) -> str:
-    """A markdown table with one row a mistake."""
+    """A markdown table with one row for each mistake."""
     rows = [["mistake", *columns], ["---"] * (1 + len(columns))]
     rows += [[name, *(column[name] for column in columns.values())] for name in ("none", *MISTAKES)]
     named = [sum(cell in (FOUND, ALSO) for cell in column.values()) for column in columns.values()]
@@ -120,7 +129,7 @@ def table(columns: dict[str, dict[str, str]]) -> str:
 
 
 def checks() -> str:
-    """All that is looked at."""
+    """The list of all checks."""
     return "## All checks\n\n" + "\n".join(f"- {check.topic}" for check in CHECKS) + "\n"
 
 

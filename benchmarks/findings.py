@@ -17,10 +17,10 @@ from svgf_cl.io.atomic import write_text, written_whole
 TITLE = "Speed against error"
 
 LEGEND = (
-    f"{MARK}: on the Pareto front: nothing else is both faster on the device and better by that error.",
-    "oracle: against float64 doing the same, relative to the picture's mean: what arithmetic and storage lose.",
-    "area: jittered rays against path-traced light averaged over each pixel; without TAA much of it is aliasing.",
-    "centre: rays through pixel centres, the truth's too: the error of the filter alone, without TAA.",
+    f"{MARK}: on the Pareto front: no other variant is both faster on the device and better by that error.",
+    "oracle: error compared with the same filter in float64, relative to the picture's mean.",
+    "area: error of jittered rays, compared with light averaged over each pixel; without TAA much of it is aliasing.",
+    "centre: error if all rays, also of the truth, go through pixel centres: that of the filter alone, without TAA.",
 )
 
 

@@ -191,8 +191,8 @@ MISTAKES = {
     ),
     "motion: UV units": Mistake(motion.DIRECTION, "motion", "in UV units", in_units),
     "motion: NDC, y up": Mistake(motion.DIRECTION, "motion", "in NDC", in_ndc),
-    "motion: all 0": Mistake(motion.DIRECTION, "motion", "0 though something moves", of("motion", np.zeros_like)),
-    "motion: jitter left in": Mistake(camera.JITTER, "motion", "jitter left in", jittered),
+    "motion: all 0": Mistake(motion.DIRECTION, "motion", "0, but something moves", of("motion", np.zeros_like)),
+    "motion: jitter left in": Mistake(camera.JITTER, "motion", "contains jitter", jittered),
     "normal: 0..1": Mistake(values.LENGTH, "normal", "encoded in 0..1", of("normal", lambda given: 0.5 * given + 0.5)),
     "normal: view space": Mistake(surfaces.WORLD, "normal", "in view space", in_view_space),
     "normal: constant": Mistake(

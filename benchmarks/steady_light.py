@@ -17,10 +17,12 @@ FRAMES = 24
 LIGHT = 1e4
 NOISE = (1e-1, 1e-2, 1e-3, 1e-4)
 
-INTRODUCTION = f"""Variance of steady light: the error of `moment_variance`, rms and relative to its mean, after
-{FRAMES} frames of a luminance of {LIGHT:g} with normally distributed noise. Before: the paper's `mu2 - mu1^2` in
-float32. After: mean and variance as `temporal.cl` keeps them, in float32, and in 16-bit floats, which know a deviation
-to 1e-3 of the light.
+INTRODUCTION = f"""The last table is about the variance of steady light.
+It has the error of the stage `moment_variance`: rms, relative to the mean variance.
+The input is {FRAMES} frames with a luminance of {LIGHT:g} and normally distributed noise.
+"Before" is the formula of the paper, `mu2 - mu1^2`, in float32.
+"After" is mean and variance as `temporal.cl` stores them, in float32 and in 16-bit floats.
+16-bit floats can store a deviation only to 1e-3 of the light.
 """
 
 
@@ -81,7 +83,7 @@ def errors(noise: float, queue: cl.CommandQueue | None = None) -> tuple[float, f
 
 
 def table(queue: cl.CommandQueue | None = None) -> str:
-    """A markdown table with one row a strength of noise."""
+    """A markdown table with one row for each strength of noise."""
     lines = ["| noise | before, float32 | after, float32 | after, 16 bits |", "|---|---|---|---|"]
     for noise in NOISE:
         lines.append(f"| {noise:g} | " + " | ".join(f"{error:.1e}" for error in errors(noise, queue)) + " |")

@@ -11,7 +11,7 @@ ON_A_DEVICE = (
     TRACED,
     "tests/tracer/hard",
     "tests/svgf_cl/test_denoiser.py",
-    *(f"tests/svgf_cl/device/test_{name}.py" for name in ("probe", "programs", "tuning")),
+    *(f"tests/svgf_cl/device/test_{name}.py" for name in ("array_checks", "probe", "programs", "svm", "tuning")),
     "tests/svgf_cl/filters/test_stages.py",
     "tests/svgf_cl/oracle/test_accuracy.py",
 )

@@ -73,15 +73,6 @@ typedef struct {
     floatv first[3], second, absolute, taps;
 } Sums;
 
-INLINE void add_differences(Sums *sums, const floatv *difference, floatv seen, int channels) {
-    sums->taps += seen;
-    UNROLLED_FOR(k, channels) {
-        sums->first[k] += difference[k];
-        sums->second += difference[k] * difference[k];
-        sums->absolute += fabs(difference[k]);
-    }
-}
-
 INLINE void see_sums(Layer *layer, int input, Sums sums, int feature) {
     const floatv share = 1.0f / sums.taps;
     floatv squared_mean = (floatv)(0.0f);
@@ -105,31 +96,38 @@ INLINE floatv squared_slope(Planes planes, int feature, int behind, int ahead, f
     return where(seen, squares, (floatv)(0.0f));
 }
 
-INLINE Sums no_sums(void) {
+// The statistics of a feature in the taps up to `reach` away.
+INLINE void see_neighbourhood(Layer *layer, int input, int feature, Planes planes, int here, floatv scale, int reach) {
+    const int channels = CHANNELS_OF(feature);
+    floatv own[3];
+    UNROLLED_FOR(k, channels) own[k] = feature_at(planes, feature, k, here);
     Sums sums;
     UNROLLED_FOR(k, 3) sums.first[k] = (floatv)(0.0f);
     sums.second = sums.absolute = (floatv)(0.0f);
     sums.taps = (floatv)(TINY);
-    return sums;
+    ROLLED_FOR(dy, -reach, reach) {
+        ROLLED_FOR(dx, -reach, reach) {
+            const int tap = moved(here, dy * planes.size.z + dx);
+            const floatv seen = where(depth_at(planes, tap) > 0.0f, (floatv)(1.0f), (floatv)(0.0f));
+            sums.taps += seen;
+            UNROLLED_FOR(k, channels) {
+                const floatv difference = seen * apart(feature_at(planes, feature, k, tap), own[k], scale);
+                sums.first[k] += difference;
+                sums.second += difference * difference;
+                sums.absolute += fabs(difference);
+            }
+        }
+    }
+    see_sums(layer, input, sums, feature);
 }
 
 INLINE void see_feature(Layer *layer, int feature, Planes planes, int here, floatv scale) {
-    const int input = feature * STATISTICS, channels = CHANNELS_OF(feature);
-    Sums near = no_sums(), wide = no_sums();
-    floatv own[3];
-    UNROLLED_FOR(k, channels) own[k] = feature_at(planes, feature, k, here);
-    ROLLED_FOR(dy, -WIDE, WIDE) {
-        ROLLED_FOR(dx, -WIDE, WIDE) {
-            const int tap = moved(here, dy * planes.size.z + dx);
-            const floatv seen = where(depth_at(planes, tap) > 0.0f, (floatv)(1.0f), (floatv)(0.0f));
-            floatv difference[3];
-            UNROLLED_FOR(k, channels) difference[k] = seen * apart(feature_at(planes, feature, k, tap), own[k], scale);
-            add_differences(&wide, difference, seen, channels);
-            if (max(max(dx, -dx), max(dy, -dy)) <= NEAR) add_differences(&near, difference, seen, channels);
-        }
+    const int input = feature * STATISTICS;
+    // A loop, so that a statistic is multiplied by its weights at once. Else LLVM does that where the sums are needed,
+    // at the end, and keeps all weights until then: more than the scalar registers of AMD's GPUs hold.
+    ROLLED_FOR(wide, 0, 1) {
+        see_neighbourhood(layer, input + 3 * wide, feature, planes, here, scale, wide ? WIDE : NEAR);
     }
-    see_sums(layer, input, near, feature);
-    see_sums(layer, input + 3, wide, feature);
     const floatv gradient =
         squared_slope(planes, feature, here - 1, here + 1, scale) +
         squared_slope(planes, feature, moved(here, -planes.size.z), moved(here, planes.size.z), scale);
@@ -157,7 +155,7 @@ INLINE void put_parameters(Layer layer, const int4 size, int s, int here, intv h
         layer.hidden[j] = h / (1.0f + fabs(h));
     }
     __global const float *second = layer.network + (INPUTS + 1) * HIDDEN;
-    UNROLLED_FOR(k, PARAMETERS_EXPONENTS_CHANNELS) {
+    ROLLED_FOR(k, 0, PARAMETERS_EXPONENTS_CHANNELS - 1) {
         floatv power = (floatv)(second[HIDDEN * PARAMETERS_EXPONENTS_CHANNELS + k]);
         UNROLLED_FOR(j, HIDDEN) power += second[j * PARAMETERS_EXPONENTS_CHANNELS + k] * layer.hidden[j];
         const floatv made = weight(ONE + OCTAVE * clamp(power, LEAST_POWER, GREATEST_POWER));

@@ -23,20 +23,21 @@ INPUTS = Inputs(motion=3, albedo=True, emission=True, id=True)
 INTRODUCTION = f"""
 The tables are for default settings with `taa`, and frames with {INPUTS}.
 
-- A tap is written as `quantity@pixels`: `depth@5±1` means the depth at 5 pixels, none more than 1 pixel away along a
-  row or a column. `@4 moved` means 4 pixels around the place where the pixel was in the frame before. A quantity
-  without `@` is read at the pixel itself.
-- "previous" marks a buffer as the frame before left it.
-- "numbers" are the settings that the kernel gets, with their defaults; a level after the first lists only what differs.
+- A tap is written as `quantity@pixels`: `depth@5±1` means the depth at 5 pixels, each at most 1 pixel away along a
+  row or a column.
+  `@4 moved` means 4 pixels around the position of the pixel in the previous frame.
+  A quantity without `@` is read at the pixel itself.
+- "previous" marks a buffer that the previous frame wrote.
+- "numbers" are the settings that the kernel gets, with their defaults; levels after the first list only differences.
 - Operations and bytes are those of one pixel in a steady state, as [benchmarks.md](benchmarks.md#roofline) counts them:
   each plane that a pass needs is read once, and neighbours come from a cache.
 """
 
-LIVES = {Life.SCRATCH: "this frame", Life.HISTORY: "next frame", Life.PAIR: "next frame, two halves by turns"}
+LIVES = {Life.SCRATCH: "this frame", Life.HISTORY: "next frame", Life.PAIR: "next frame, two halves that alternate"}
 
 
 def tables() -> str:
-    """What stands between the two marks."""
+    """The text between the two marks."""
     return "\n".join([INTRODUCTION, *(part for kind in FILTERS.values() for part in section(kind))])
 
 
@@ -95,12 +96,12 @@ def planes_text(quantity: Quantity) -> str:
 
 
 def memory(pipeline: Pipeline) -> str:
-    """Which buffers take turns in the same memory."""
+    """Which buffers share the same memory."""
     slots = memory_slots(pipeline)
     shared = [", ".join(map(str, slot.buffers)) for slot in slots if len(slot.buffers) > 1]
     total = sum(slot.planes.depth / slot.spacing**2 for slot in slots) / 8
     turns = "; ".join(shared) or "none"
-    return f"{total:g} bytes a pixel in all. Buffers that take turns in the same memory: {turns}.\n"
+    return f"{total:g} bytes a pixel in total. Buffers that share the same memory: {turns}.\n"
 
 
 def joined(parts: Iterable[str]) -> str:
@@ -115,7 +116,7 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def page(now: str) -> str:
-    """The page with the tables as they are to be, in place of what stands between the marks."""
+    """The page with new tables between the marks."""
     before, begin, rest = now.partition(BEGIN)
     _, end, after = rest.partition(END)
     if not (begin and end):

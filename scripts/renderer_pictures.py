@@ -1,9 +1,9 @@
 r"""Writes the pictures of docs/renderers from folders of frames: noisy, denoised and the reference, side by side.
 
     python -m scripts.renderer_pictures docs/renderers/blender.webp \
-        ../shared/samples/blender cases/blender/metal_glass ../shared/samples/blender:60,55,128,72
+        samples/blender cases/blender/metal_glass samples/blender:60,55,128,72
     python -m scripts.renderer_pictures docs/renderers/mitsuba.webp \
-        ../shared/samples/mitsuba:30,0,172,144 cases/mitsuba/materials
+        samples/mitsuba:30,0,172,144 cases/mitsuba/materials
 
 Each folder is a row. It has frames in ``noisy`` and what they converge to in ``reference``, as those that
 `scripts/renderers` renders; the last frame that has a reference is shown, as `svgf-cl denoise` without any option makes

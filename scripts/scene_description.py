@@ -17,12 +17,17 @@ INTRODUCTION = """# scene.json
 
 Made by `make docs` (`python scripts/scene_description.py`) from `tracer/svgf_cl_tracer/description`; do not edit.
 
-What a model's own file lacks of a scene, in a file beside it; `svgf-cl render FOLDER` takes both. Numbers and booleans
-are not put into quotes, and a field that is not listed here is an error. Colours are linear, of sRGB's primaries.
-Radiance has no absolute unit, but the same throughout a scene.
+A file `scene.json` beside a model describes what the model's own file does not contain.
+This may be a camera, lights, materials and animation.
+`svgf-cl render FOLDER` reads both.
+
+Numbers and booleans have no quotes.
+A field that is not listed here is an error.
+Colours are linear, with the primaries of sRGB.
+Radiance has no absolute unit, but all radiance in a scene has the same unit.
 """
 
-# Of the fields that tell one kind of object from another.
+# Fields that say which kind of object this is.
 TAGS = ("type", "kind")
 
 QUOTE = '"'
@@ -37,20 +42,20 @@ def page() -> str:
 
 
 def section(part: dict[str, Any], parts: dict[str, Any]) -> str:
-    """One object: a sentence, and a row a field; the one that says which object it is comes first."""
+    """One object: a sentence, and a table with a row for each field; the kind of object comes first."""
     fields = sorted(part["properties"].items(), key=lambda item: item[0] not in TAGS)
     rows = [
-        f"| `{name}` | {field.get('description', 'What this is.')} | {values(field, parts)} | {default(field)} |"
+        f"| `{name}` | {field.get('description', 'The kind of object.')} | {values(field, parts)} | {default(field)} |"
         for name, field in fields
     ]
-    head = ["| field | meaning | values | where absent |", "|---|---|---|---|"]
+    head = ["| field | meaning | values | default |", "|---|---|---|---|"]
     return "\n".join([f"\n## {part['title']}\n{part['description']}\n", *head, *rows]) + "\n"
 
 
 def default(field: dict[str, Any]) -> str:
-    """What holds where the field is absent."""
+    """The default, or that the field is required."""
     if "default" not in field:
-        return "an error"
+        return "required"
     value = field["default"]
     return "-" if value in (None, "", [], {}) else f"`{json.dumps(value).strip(QUOTE)}`"
 

@@ -13,6 +13,8 @@ from pathlib import Path
 from benchmarks.implementations import Environment, environments
 from benchmarks.suites import suite
 
+OPTIONS = ("-n", "auto", "--maxprocesses", "8", "--durations", "12", "--durations-min", "5")
+
 
 def ends_well(*module: str, environment: Environment | None = None) -> bool:
     """Run a module of Python with these arguments."""
@@ -27,7 +29,7 @@ def main() -> None:
         for name, environment in environments(Path(folder)).items():
             print(f"\ntest-all: {name}", flush=True)
             chosen = suite(name, brief=brief)
-            if not ends_well("pytest", "-n", "auto", "--maxprocesses", "8", *chosen, environment=environment):
+            if not ends_well("pytest", *OPTIONS, *chosen, environment=environment):
                 failed.append(name)
     if not brief:
         print("\ntest-all: accuracy", flush=True)

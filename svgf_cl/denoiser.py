@@ -24,11 +24,13 @@ from svgf_cl.device.arguments import (
     held,
     layout_of,
 )
+from svgf_cl.device.array_checks import check_out
 from svgf_cl.device.events import pending
+from svgf_cl.device.gl_objects import acquired
 from svgf_cl.device.opencl_errors import allocate, opencl_errors
 from svgf_cl.device.process import check_process, is_forked
 from svgf_cl.device.tuning import Tuning
-from svgf_cl.device.user_arrays import Exchange, UserArrays, check_out
+from svgf_cl.device.user_arrays import Exchange, UserArrays
 from svgf_cl.errors import ArgumentError, SvgfError, shown
 from svgf_cl.filters import DEFAULT
 from svgf_cl.filters.filter import Filter
@@ -97,7 +99,7 @@ class Denoiser:
         self._after_pass = check_hook(after_pass)
         layout = layout_of(self._shape, self._tuning, self._settings)
         self._workplace = Workplace(held(self._queue), layout, self._tuning, keep_stages)
-        self._arrays: UserArrays | None = UserArrays(self._workplace.queue)
+        self._arrays: UserArrays | None = UserArrays(self._workplace.queue, pinned=self._tuning.pinned_copies)
         self._plan: Plan | None = None
         self._inputs: Inputs | None = None
         self._is_cut = True
@@ -146,7 +148,8 @@ class Denoiser:
         Raises
         ------
         FrameError
-            If a field is missing, of another shape or type, or on another context. The call counts as not made.
+            If a field is missing, of another shape or type, on another context, or in memory that the device cannot
+            use (SVM, OpenGL). The call counts as not made.
         ArgumentError
             If the set of fields changed, if `out` is of another shape or type, if as an Array it is the memory of a
             field, or if an event failed. The call counts as not made.
@@ -247,7 +250,7 @@ class Denoiser:
 
     @property
     def events(self) -> tuple[tuple[str, cl.Event], ...]:
-        """Label and OpenCL event of every pass of the last frame, and of copies of Arrays with strides, in order."""
+        """Label and event of every pass of the last frame, and of what is done to Arrays around them, in order."""
         return self._events
 
     def profile(self) -> dict[str, float]:
@@ -357,13 +360,15 @@ class Denoiser:
         first = self._is_cut
         self._cut()
         queue = self._workplace.queue
+        done: list[tuple[str, cl.Event]] = []
         with self._opencl_errors("denoise", BROKEN_OFF):
             with arrays.in_use(exchange, result):
                 if events:
                     cl.enqueue_barrier(queue, wait_for=events)
-                done = arrays.copy(exchange.before)
-                done += self._passes(plan, exchange.buffers, first)
-                done += arrays.copy(exchange.after)
+                with acquired(queue, exchange.gl_objects, done):
+                    done += arrays.copy(exchange.before)
+                    done += self._passes(plan, exchange.buffers, first)
+                    done += arrays.copy(exchange.after)
             if isinstance(result, cl_array.Array):
                 result.add_event(done[-1][1])
                 queue.flush()  # whoever waits for that event on another queue must not wait for ever

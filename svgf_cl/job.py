@@ -91,7 +91,7 @@ class Job:
     def __post_init__(self) -> None:
         settings = self.method.settings
         if self.look_ahead is not None and isinstance(settings, Kalman) and settings.standard_error:
-            raise SvgfError("standard_error: expected it off with --look-ahead, which makes no estimate of it, got on")
+            raise SvgfError("standard_error: expected off with --look-ahead, which does not estimate it, got on")
 
 
 @dataclass(frozen=True)

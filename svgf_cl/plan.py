@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -12,14 +11,15 @@ import pyopencl as cl
 from svgf_cl.device import programs
 from svgf_cl.device.arguments import AfterPass
 from svgf_cl.device.buffers import Buffers
-from svgf_cl.device.launch import Argument, Grid, Launch, scalar_arguments
-from svgf_cl.device.layout import HALO, Layout
-from svgf_cl.device.memory_plan import memory_slots
+from svgf_cl.device.launch import Argument, Grid, Launch
+from svgf_cl.device.layout import Layout
+from svgf_cl.device.memory import TURNS
 from svgf_cl.device.opencl_errors import allocate
 from svgf_cl.device.tuning import Tuning
 from svgf_cl.errors import SvgfError
-from svgf_cl.filters.pipeline import Access, Buffer, Pass, Pipeline, Resource
+from svgf_cl.filters.pipeline import Access, Buffer, Pipeline, Resource
 from svgf_cl.filters.stages import Stage, stages
+from svgf_cl.schedule import IN_PLACE, Schedule, ScheduledPass, whole_groups
 
 
 @dataclass(frozen=True)
@@ -61,17 +61,12 @@ class Plan:
     """
 
     def __init__(self, pipeline: Pipeline, workplace: Workplace) -> None:
-        if pipeline.reach > HALO:
-            raise ValueError(f"expected taps within the halo of {HALO} pixels, got some {pipeline.reach} away")
+        schedule = Schedule(pipeline, workplace.layout, workplace.tuning)
         self.pipeline = pipeline
         self.stages: dict[str, Stage] = stages(pipeline)
         self._at = workplace
-        self._buffers = Buffers(
-            workplace.queue, workplace.layout, memory_slots(pipeline), copies=workplace.keeps_stages
-        )
-        self._constants = uploaded(workplace.queue, pipeline)
-        self._turns = [self._launches() for _ in range(2)]  # of odd and even frames: a pair's halves change places
-        self._turn = itertools.cycle(self._turns)
+        self._buffers = Buffers(workplace.queue, schedule.memory, copies=workplace.keeps_stages)
+        self._turns = self._launches(schedule)
         self._frame_number = 0
         self._without_past: list[Resource] = []  # of those that last, until the next frame
 
@@ -99,14 +94,13 @@ class Plan:
             Label and event of every pass.
         """
         self._buffers.begin_frame()
-        launches = next(self._turn)  # in step with the buffers, whatever fails from here on
         self._buffers.forget(self.pipeline.lasting if first else self._without_past)
         self._without_past = []
         if first:
             self._frame_number = 0
         done = []
-        numbers = {"frame_number": self._frame_number, "past_x": 0, "past_y": 0}
-        for each in launches:
+        numbers = {"frame_number": self._frame_number, **IN_PLACE}
+        for each in self._turns[self._buffers.turn]:
             event = each.enqueue(self._at.queue, user, numbers)
             self._keep(each.entry.writes)
             if after_pass:
@@ -157,16 +151,17 @@ class Plan:
             if self._at.keeps_stages and isinstance(each.of, Buffer):
                 self._buffers.copy_aside(each.of)
 
-    def _launches(self) -> tuple[Launch, ...]:
-        """The launches of the next frame."""
-        self._buffers.begin_frame()
-        return tuple(
-            launch(self.pipeline, entry, constants, self._at, self._own(entry))
-            for entry, constants in zip(self.pipeline.passes, self._constants, strict=True)
-        )
+    def _launches(self, schedule: Schedule) -> list[tuple[Launch, ...]]:
+        """The launches of each turn."""
+        constants, found = uploaded(self._at.queue, schedule.pipeline), []
+        for _ in range(TURNS):
+            self._buffers.begin_frame()
+            bound = [fixed | self._own(each) for each, fixed in zip(schedule.passes, constants, strict=True)]
+            found.append(tuple(launch(schedule, *each, self._at) for each in zip(schedule.passes, bound, strict=True)))
+        return found
 
-    def _own(self, entry: Pass) -> dict[str, cl.Buffer]:
-        return {each.argument: self._buffers[each.of] for each in entry.accesses if isinstance(each.of, Buffer)}
+    def _own(self, scheduled: ScheduledPass) -> dict[str, cl.Buffer]:
+        return {name: self._buffers[of] for name, of in scheduled.own.items()}
 
 
 def uploaded(queue: cl.CommandQueue, pipeline: Pipeline) -> list[dict[str, cl.Buffer]]:
@@ -179,39 +174,23 @@ def uploaded(queue: cl.CommandQueue, pipeline: Pipeline) -> list[dict[str, cl.Bu
     return found
 
 
-def launch(
-    pipeline: Pipeline,
-    entry: Pass,
-    constants: Mapping[str, cl.Buffer],
-    at: Workplace,
-    own: Mapping[str, cl.Buffer],
-    past: Layout | None = None,
-) -> Launch:
-    """A pass of a pipeline made ready to run.
+def launch(schedule: Schedule, scheduled: ScheduledPass, memory: Mapping[str, cl.Buffer], at: Workplace) -> Launch:
+    """A pass of a schedule made ready to run.
 
     Parameters
     ----------
-    pipeline : Pipeline
-    entry : Pass
-    constants, own : mapping of str to pyopencl.Buffer
-        The memory of its constant arrays and of the denoiser's buffers, by the kernel's names.
+    schedule : Schedule
+    scheduled : ScheduledPass
+        One of its passes.
+    memory : mapping of str to pyopencl.Buffer
+        Its constant arrays and the denoiser's buffers, by the kernel's names.
     at : Workplace
-    past : Layout, optional
-        Of the buffers that the previous frame left, if it is not that of the others.
     """
-    defines = at.tuning.defines | pipeline.defines
-    kernel = cl.Kernel(programs.build(at.queue.context, at.queue.device, entry.source, defines), entry.kernel)
-    layouts = {
-        "size": at.layout,
-        "coarse_size": at.layout.every(entry.coarse_spacing),
-        "past_size": past or at.layout,
-    }
-    sizes = {name: layouts[name].size for name in entry.sizes}
-    fixed: dict[str, Argument] = {**sizes, **scalar_arguments(entry), **constants, **own}
-    work_group = fitting(at.tuning.work_group, kernel, at.queue.device)
-    written = at.layout.every(entry.spacing)
-    work_items = written.work_items(at.tuning.vector_width, work_group, entry.row_step)
-    return Launch(entry, kernel, fixed, work_items, work_group)
+    entry, device = scheduled.entry, at.queue.device
+    kernel = cl.Kernel(programs.build(at.queue.context, device, entry.source, schedule.defines), entry.kernel)
+    fixed: dict[str, Argument] = {**scheduled.values, **memory}
+    work_group = fitting(schedule.tuning.work_group, kernel, device)
+    return Launch(entry, kernel, fixed, whole_groups(scheduled.work_items, work_group), work_group)
 
 
 def fitting(work_group: Grid, kernel: cl.Kernel, device: cl.Device) -> Grid:

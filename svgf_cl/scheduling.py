@@ -110,14 +110,16 @@ class Cluster:
                     return
                 yield pending.popleft().result()
         except KilledWorker as error:
-            raise SchedulerError(f"--scheduler: workers die of a task, for want of memory perhaps ({error})") from error
+            raise SchedulerError(
+                f"--scheduler: workers die while they work on a task, perhaps because they need more memory ({error})"
+            ) from error
         except ImportError as error:
             raise SchedulerError(
                 f"--scheduler: a worker lacks a package ({one_line(error)}); install it there"
             ) from error
         except (CancelledError, OSError) as error:
             raise SchedulerError(
-                f"--scheduler: the connection was lost ({error}); run again when it is back"
+                f"--scheduler: the connection was lost ({error}); run the command again when the scheduler is back"
             ) from error
         finally:
             self._client.cancel(pending)
@@ -146,7 +148,7 @@ def _do(
     """One task, on a worker."""
     if version() != expected:
         raise SchedulerError(
-            "--scheduler: expected workers with this version of svgf_cl and its libraries, found another"
+            "--scheduler: expected workers with this version of svgf_cl and its libraries, found another version"
         )
     return function(shared, item)
 

@@ -158,8 +158,8 @@ def is_sum(rest: Picture) -> bool:
     share = float((rest.min(axis=-1) < 0.0).mean())
     if share > STRAY:
         warnings.warn(
-            f"the light passes add up to more than the picture in {100 * share:.0f} % of the pixels, so they are left"
-            " as they are, and the picture is denoised as a whole",
+            f"the light passes add up to more than the picture in {100 * share:.0f} % of the pixels, so they stay"
+            " unchanged, and the picture is denoised as a whole",
             stacklevel=3,
         )
     return share <= STRAY

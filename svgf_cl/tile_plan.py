@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from svgf_cl.device.buffers import Buffers
 from svgf_cl.device.host_planes import HostPlanes, Place
 from svgf_cl.device.launch import Launch
+from svgf_cl.device.memory import Memory
 from svgf_cl.device.opencl_errors import allocate
 from svgf_cl.device.past_windows import Motion, PastWindow, Reach, past_windows
 from svgf_cl.device.tiles import Tile
@@ -25,6 +26,7 @@ from svgf_cl.filters.margins import margins
 from svgf_cl.filters.pipeline import Buffer, Resource, history_of
 from svgf_cl.filters.stages import Stage, stages
 from svgf_cl.plan import Workplace, launch, uploaded
+from svgf_cl.schedule import Schedule
 
 Events = list[tuple[str, cl.Event]]
 UserBuffers = Mapping[str, cl.Buffer]
@@ -75,15 +77,15 @@ class TilePlan:
         self._shape, self._past_shape = tiling.shape, tiling.past_window(window)
         self._at, self._queue = workplace, queue
         self._past_layout = tiling.layout(self._past_shape)
-        self._buffers = Buffers(queue, workplace.layout, tiling.slots)
-        self._past = Buffers(queue, self._past_layout, tiling.past_slots)
+        self._buffers = Buffers(queue, Memory(workplace.layout, tiling.slots))
+        self._past = Buffers(queue, Memory(self._past_layout, tiling.past_slots))
         self._motion: cl.Buffer | None = None
-        self._constants = uploaded(queue, pipeline)
         self._steps = list(self._made_ready())
         self._before, self._now = (HostPlanes(tiling.past, tiling.shape) for _ in range(2))
         self._results = HostPlanes(tiling.results, tiling.shape)
         self._stages = {name: stage for name, stage in stages(pipeline).items() if self._kept(stage)}
         self._frame_number = 0
+        self._copies: list[cl.Event] = []  # to and from the host's planes, which may be under way
 
     @property
     def stages(self) -> list[str]:
@@ -102,12 +104,14 @@ class TilePlan:
 
     def begin_frame(self, *, first: bool) -> None:
         """Before the tiles of a frame; `first` where nothing is known of the past."""
+        self._wait()
         if first:
             self._frame_number = 0
             self._before.forget()
 
     def end_frame(self) -> None:
         """After the tiles of a frame: they are the past of the next. Without it that frame has left nothing."""
+        self._wait()
         self._before, self._now = self._now, self._before
         self._frame_number += 1
 
@@ -142,17 +146,16 @@ class TilePlan:
         return [each for each in (self._before, self._results) if each.holds(stage.resource, stage.quantity)]
 
     def _made_ready(self) -> Iterator[Step]:
-        pipeline = self.pipeline
-        for entry, constants, margin in zip(pipeline.passes, self._constants, margins(pipeline), strict=True):
-            past = pipeline.past_of(entry)
-            own = {
-                each.argument: (self._past if each in past else self._buffers)[each.of]
-                for each in entry.accesses
-                if isinstance(each.of, Buffer)
-            }
-            ready = launch(pipeline, entry, constants, self._at, own, self._past_layout)
+        pipeline, at = self.pipeline, self._at
+        schedule = Schedule(pipeline, at.layout, at.tuning, self._past_layout)
+        constants = uploaded(self._queue, pipeline)
+        for scheduled, fixed, margin in zip(schedule.passes, constants, margins(pipeline), strict=True):
+            past = pipeline.past_of(scheduled.entry)
+            arguments = {each.argument for each in past}
+            own = {name: (self._past if name in arguments else self._buffers)[of] for name, of in scheduled.own.items()}
+            ready = launch(schedule, scheduled, fixed | own, at)
             if past:
-                reach = Reach.of(entry)
+                reach = Reach.of(scheduled.entry)
                 yield Step(ready, [each.resource for each in past], margin + reach.beside, reach)
             else:
                 yield Step(ready)
@@ -174,7 +177,7 @@ class TilePlan:
         corner = window.corner[0] - window.origin[0], window.corner[1] - window.origin[1]
         for resource in step.past:
             place = Place(self._past[history_of(resource)], self._past_layout, corner)
-            self._before.upload(self._queue, resource, place, window.corner, window.size)
+            self._copies += self._before.upload(self._queue, resource, place, window.corner, window.size)
 
     def _enqueue(self, step: Step, user: UserBuffers, past: tuple[int, int]) -> tuple[str, cl.Event]:
         numbers = {"frame_number": self._frame_number, "past_y": past[0], "past_x": past[1]}
@@ -235,7 +238,14 @@ class TilePlan:
         for planes in (self._now, self._results):
             for resource in planes.resources:
                 place = Place(self._buffers[Buffer(resource)], self._at.layout, (rows.start, columns.start))
-                planes.download(self._queue, resource, place, (tile.rows.begin, tile.columns.begin), size)
+                corner = tile.rows.begin, tile.columns.begin
+                self._copies += planes.download(self._queue, resource, place, corner, size)
+
+    def _wait(self) -> None:
+        """Have the host's planes be the host's again."""
+        if self._copies:
+            cl.wait_for_events(self._copies)
+        self._copies = []
 
 
 def offset(tile: Tile, window: PastWindow) -> tuple[int, int]:

@@ -11,12 +11,13 @@ import pyopencl as cl
 
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.device.arguments import check_filter, check_inputs, check_queue, check_shape, check_tuning, held
+from svgf_cl.device.array_checks import check_out
 from svgf_cl.device.opencl_errors import mebibytes, opencl_errors
 from svgf_cl.device.process import check_process
 from svgf_cl.device.tiles import Tile
 from svgf_cl.device.tiling import Tiling
 from svgf_cl.device.tuning import Tuning, best_tuning
-from svgf_cl.device.user_arrays import UserArrays, as_read, check_out
+from svgf_cl.device.user_arrays import UserArrays, as_read
 from svgf_cl.errors import ArgumentError, DeviceError, FrameError, SvgfError, shown
 from svgf_cl.filters import DEFAULT
 from svgf_cl.filters.filter import Filter
@@ -80,7 +81,7 @@ class TiledDenoiser:
         tiling = Tiling(self._settings.pipeline(inputs), self._shape, tuning.row_alignment)
         limit = check_max_bytes(max_bytes, device)
         window = window_for(tiling, device, limit)
-        self._arrays: UserArrays | None = UserArrays(held(self._queue))
+        self._arrays: UserArrays | None = UserArrays(held(self._queue), pinned=tuning.pinned_copies)
         with opencl_errors(device, "TiledDenoiser", "make one with a lesser max_bytes"):
             at = Workplace(held(self._queue), tiling.layout(window), tuning)
             self._plan: TilePlan | None = TilePlan(tiling, at)

@@ -56,7 +56,7 @@ def wheel(tmp_path_factory) -> Path:
 def test_wheel_holds_kernels_types_pages_and_license(wheel):
     names = set(zipfile.ZipFile(wheel).namelist())
     assert {f"svgf_cl/kernels/{path.name}" for path in (ROOT / "kernels").glob("*.cl*")} <= names
-    assert {"svgf_cl/py.typed", "svgf_cl/denoiser.py"} <= names
+    assert {"svgf_cl/py.typed", "svgf_cl/denoiser.py", "svgf_cl/export/plan.schema.json"} <= names
     assert {f"svgf_cl/compare/page.{kind}" for kind in ("html", "css", "js")} <= names
     assert {f"{package.replace('.', '/')}/{name}" for package, name, _ in FILES.values()} <= names
     assert "svgf_cl_tracer/builtin/cornell.py" in names

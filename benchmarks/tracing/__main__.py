@@ -34,8 +34,8 @@ def tracing(
     \b
     Examples:
       python -m benchmarks.tracing
-      python -m benchmarks.tracing ../shared/scenes/veach_ajar -o out/ajar
-      python -m benchmarks.tracing ../shared/scenes/sponza --compare out/before/results.json
+      python -m benchmarks.tracing glossy -o out/glossy
+      python -m benchmarks.tracing glossy --compare out/before/results.json
     """
     require_tracer()
     try:

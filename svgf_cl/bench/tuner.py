@@ -3,6 +3,9 @@
 Coordinate descent, one race each for vector width, exponential, alignment of rows and work-group. In a race all denoise
 the same frames in turn, a few rounds at a time, and the slower half drops out. What counts is a candidate's time over
 the default's in the same round: whatever else the machine is doing hits both alike.
+
+That is time on the device. Where numpy arrays are copied to the device, a last race is about the copies alone, and what
+counts there is the whole time of a call from numpy to numpy.
 """
 
 from __future__ import annotations
@@ -21,6 +24,7 @@ from svgf_cl.denoiser import Denoiser
 from svgf_cl.device.apart import summary
 from svgf_cl.device.layout import Layout
 from svgf_cl.device.tuning import EXPONENTIALS, VECTOR_WIDTHS, Tuning, default_tuning
+from svgf_cl.device.user_arrays import shares_memory
 from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.synthetic import PERIOD, room_frames
@@ -162,6 +166,27 @@ class Tuner:
         """Of a search, as its progress is counted."""
         return sum(map(len, self._choices.values())) + 1
 
+    def race_copies(self, tuning: Tuning) -> Trial | None:
+        """Race copies by way of pinned memory against direct ones, after `search`.
+
+        Parameters
+        ----------
+        tuning : Tuning
+            The one to use, with direct copies.
+
+        Returns
+        -------
+        Trial, optional
+            `tuning` with pinned copies; to be used if it `is_faster`. None where the device works in the host's memory,
+            so that hardly anything is copied.
+        """
+        if shares_memory(self._queue.device):
+            return None
+        direct, pinned = Trial(tuning), Trial(replace(tuning, pinned_copies=True))
+        runners = [self._enter(direct), self._enter(pinned)]
+        self._run(runners, FINAL_ROUNDS, time.monotonic() + FINAL_SHARE * self._seconds, self._milliseconds_of_call)
+        return pinned
+
     def search(self, advance: Callable[[], None] = lambda: None) -> Trial:
         """Race the candidates, then the best of them against the default alone.
 
@@ -248,20 +273,36 @@ class Tuner:
             raise SvgfError(f"{off:.2%} of its pixels differ from the default's")
         return Runner(trial, denoiser, min(times[1:]))
 
-    def _run(self, runners: Sequence[Runner], rounds: tuple[int, int], deadline: float) -> None:
-        """Time runners, the default first, frame by frame in turn: rounds[1] frames, after rounds[0] only in time."""
+    def _run(
+        self,
+        runners: Sequence[Runner],
+        rounds: tuple[int, int],
+        deadline: float,
+        clock: Callable[[Denoiser, Frame], float] | None = None,
+    ) -> None:
+        """Time runners against the first, frame by frame in turn: rounds[1] frames, after rounds[0] only in time.
+
+        `clock` times a frame, in ms; without one its time on the device counts.
+        """
+        clock = clock or self._milliseconds
         for index in range(rounds[1]):
             if index >= rounds[0] and time.monotonic() > deadline:
                 break
             frame = self._frames[(WARM_UP + index) % PERIOD]
             times = {}
             for runner in self._random.sample(runners, len(runners)):
-                times[runner.trial.tuning] = self._milliseconds(runner.denoiser, frame)
+                times[runner.trial.tuning] = clock(runner.denoiser, frame)
             for runner in runners:
                 runner.trial.times.append(times[runner.trial.tuning])
-                runner.trial.ratios.append(times[runner.trial.tuning] / times[self._default.tuning])
+                runner.trial.ratios.append(times[runner.trial.tuning] / times[runners[0].trial.tuning])
 
     def _milliseconds(self, denoiser: Denoiser, frame: Frame) -> float:
         """Time of a frame on the device."""
         denoiser.denoise(frame, out=self._out)
         return sum(denoiser.profile().values())
+
+    def _milliseconds_of_call(self, denoiser: Denoiser, frame: Frame) -> float:
+        """Time of a call from numpy arrays to a numpy array, as its caller sees it."""
+        begin = time.perf_counter()
+        denoiser.denoise(frame, out=self._out)
+        return 1e3 * (time.perf_counter() - begin)

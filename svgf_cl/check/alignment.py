@@ -82,7 +82,9 @@ def judged(sums: Array, topic: str, why: str, mistakes: tuple[tuple[str, str], .
         here, there = max(as_is, 0) / max(frames, 1), max(*others, 0) / max(frames, 1)
         if there > CLEARLY * here + CERTAIN:
             what, cure = mistakes[int(np.argmax(others))]
-            measured = f"its edges correlate by {there:.2f} with the other fields' if so, by {here:.2f} as it is"
+            measured = (
+                f"its edges correlate with those of the other fields by {there:.2f} if corrected, {here:.2f} as given"
+            )
             findings.append(Finding(name, what, measured, cure))
         elif frames and not here > CLEARLY * there + CERTAIN:
             alike.append(name)
@@ -93,14 +95,22 @@ def judged(sums: Array, topic: str, why: str, mistakes: tuple[tuple[str, str], .
 
 def judge_mirrored(sums: Array) -> list[Finding | Unknown]:
     """Fields that go with the others' mirror images are upside down."""
-    cure = "row 0 is on top in every field: flip the rows of what was read from a graphics API's buffer"
-    return judged(sums, UPRIGHT.topic, "too much like their mirror images", (("upside down, beside the others", cure),))
+    cure = "row 0 must be at the top of every field: flip the rows of fields from a graphics API's buffer"
+    return judged(
+        sums,
+        UPRIGHT.topic,
+        "too similar to their mirror images",
+        (("upside down, compared with the other fields", cure),),
+    )
 
 
 def judge_displaced(sums: Array) -> list[Finding | Unknown]:
     """Fields that go with the others of another frame are late or early."""
-    cure = "hand over fields of one moment: is a buffer read before it is written?"
-    mistakes = (("of the frame before, beside the others", cure), ("of the frame after, beside the others", cure))
+    cure = "give fields of one frame; perhaps a buffer is read before it is written"
+    mistakes = (
+        ("of the previous frame, compared with the other fields", cure),
+        ("of the next frame, compared with the other fields", cure),
+    )
     return judged(sums, PUNCTUAL.topic, "no edges that move by a pixel", mistakes)
 
 

@@ -112,17 +112,24 @@ def judge(sums: Array) -> list[Finding | Unknown]:
     if length < NOTICED:
         return []
     if np.hypot(x, y) / frames > SAME * length:
-        return [Unknown(JITTER.topic, "all motion has the same offset in every frame, as where a large thing slides")]
-    measured = f"{length:.2f} pixels, other ones in every frame, are added to all motion alike, as no camera moves"
+        return [
+            Unknown(
+                JITTER.topic,
+                "all motion has the same offset in every frame, which a large moving object may cause, too",
+            )
+        ]
+    measured = (
+        f"all motion has an offset of {length:.2f} pixels, which changes in every frame; no camera moves like this"
+    )
     cure = "project with both frames' unjittered matrices, or subtract this frame's offset and add the previous one's"
-    return [Finding("motion", "jitter left in", measured, cure)]
+    return [Finding("motion", "contains jitter", measured, cure)]
 
 
 JITTER = Check(
     "motion: free of jitter",
     offsets,
     judge,
-    "too much moves by itself, all is on one plane, or depth is noisy",
+    "too many objects move, everything is on one plane, or depth is noisy",
     frames=2,
     trusts=("normal", "depth", "motion"),
 )

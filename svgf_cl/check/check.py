@@ -47,9 +47,9 @@ class Check:
         """Judge the sum over frames, at most `count` of them in a row, some fields being known to be wrong."""
         first = [name for name in self.trusts if name in wrong]
         if first:
-            return [Unknown(self.topic, f"mend {first[0]} first")]
+            return [Unknown(self.topic, f"correct {first[0]} first")]
         if count < self.frames:
-            return [Unknown(self.topic, f"it takes {self.frames} frames in a row")]
+            return [Unknown(self.topic, f"it needs {self.frames} consecutive frames")]
         return [Unknown(self.topic, self.silence)] if total is None else self.judge(total)
 
     def looked_at(self, total: Array) -> tuple[str, ...]:

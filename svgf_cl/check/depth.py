@@ -108,12 +108,17 @@ def judge(sums: Array) -> list[Finding | Unknown]:
     if any(plain) or last:
         what, cure = MISTAKES[best]
         return [
-            Finding("depth", what, f"{wins[best]:g} of {wins[best] + losses[best]:g} planes are plane only if so", cure)
+            Finding(
+                "depth",
+                what,
+                f"{wins[best]:g} of {wins[best] + losses[best]:g} planes are flat only after the correction",
+                cure,
+            )
         ]
     doubtful = (wins >= ENOUGH) & (4 * wins >= losses)
     if min(losses[0], losses[3:-1].max()) >= ENOUGH and not doubtful[:-1].any():
         return []
-    return [Unknown(ENCODING.topic, "too few slanted planes, or depth too coarse")]
+    return [Unknown(ENCODING.topic, "too few slanted planes, or depth is too coarse")]
 
 
 ENCODING = Check("depth: linear, along the camera's axis", votes, judge, "too few planes", trusts=("normal", "depth"))

@@ -8,19 +8,19 @@ from typing import Literal
 
 # What svgf_cl takes each field for: docs/conventions.md in a line.
 EXPECTED = {
-    "color": "linear HDR radiance as the renderer sums it up, noisy, not yet meant for a display",
-    "normal": "world-space unit vectors, 0 where nothing was hit",
-    "depth": "distance along the camera's axis, linear, above 0, +inf where nothing was hit",
-    "motion": "previous minus current position in pixels, x right, y down, unjittered; then that of depth",
+    "color": "linear HDR radiance, noisy, without exposure or view transform",
+    "normal": "world-space unit vectors, 0 where the ray hit nothing",
+    "depth": "distance along the camera's axis, linear, above 0, +inf where the ray hit nothing",
+    "motion": "previous minus current position in pixels, x right, y down, no jitter; third component: that of depth",
     "albedo": "linear reflectance, 0 to 1",
     "id": "whole numbers; the same object has the same one in every frame",
-    "emission": "linear radiance of what shines itself, contained in color",
+    "emission": "linear radiance of visible lamps and sky, also contained in color",
     "direct": "linear radiance, color = direct + indirect + emission",
     "indirect": "linear radiance, color = direct + indirect + emission",
     "diffuse": "linear radiance, color = diffuse + specular + emission",
     "specular": "linear radiance, color = diffuse + specular + emission",
     "roughness": "perceptual roughness, 0 (mirror) to 1",
-    "hit_distance": "lengths of rays in scene units, 0 where none was shot, +inf where it left the scene",
+    "hit_distance": "lengths of rays in scene units, 0 where no ray was sent, +inf where it left the scene",
 }
 
 

@@ -165,19 +165,23 @@ def judge(sums: Array) -> list[Finding | Unknown]:
     best = int(np.flatnonzero(cured <= ALIKE * cured.min())[0])
     if moves and given > NOTICED and cured[best] < BETTER * given:
         mistake = MISTAKES[best]
-        measured = f"surfaces are {given:.2g} pixels off where it leads, {cured[best]:.2g} with the cure"
+        measured = (
+            f"the surface is {given:.2g} pixels away from where motion leads, {cured[best]:.2g} after the correction"
+        )
         return [Finding("motion", mistake.what, measured, mistake.cure)]
     if not moves and given > JITTER and local < BETTER * given:
-        measured = f"it is 0, but {given:.2g} pixels of difference become {local:.2g} where pieces of the picture move"
-        return [Finding("motion", "0 though something moves", measured, "give previous minus current position")]
+        measured = (
+            f"motion is 0, but if parts of the picture move, a difference of {given:.2g} pixels becomes {local:.2g}"
+        )
+        return [Finding("motion", "0, but something moves", measured, "give previous minus current position")]
     if not moves:
-        return [Unknown(DIRECTION.topic, "nothing moves, says motion")]
+        return [Unknown(DIRECTION.topic, "all motion is 0")]
     if given > LOST * anywhere:
-        return [Unknown(DIRECTION.topic, f"little is found again where it leads, {given:.2g} pixels are between")]
+        return [Unknown(DIRECTION.topic, f"motion hardly leads to the same surfaces; they are {given:.2g} pixels away")]
     alike = [
         mistake.what for mistake, error in zip(MISTAKES[: len(SIGNS)], cured, strict=False) if given > BETTER * error
     ]
-    return [Unknown(DIRECTION.topic, f"too little moves to rule out: {what}") for what in alike]
+    return [Unknown(DIRECTION.topic, f"there is too little movement to exclude this mistake: {what}") for what in alike]
 
 
 DIRECTION = Check(

@@ -126,7 +126,7 @@ def judge_curve(sums: Array) -> list[Finding | Unknown]:
     """The one cure with which colour goes with albedo."""
     cells = (sums[:, 0] >= ENOUGH).all(axis=0)
     if np.count_nonzero(cells) < VARIED:
-        return [Unknown(CURVE.topic, "albedo hardly varies on surfaces")]
+        return [Unknown(CURVE.topic, "albedo hardly changes across surfaces")]
     count, imbalance, contrast = np.moveaxis(sums[..., cells], 1, 0)
     off = np.abs(imbalance) / contrast
     given, *fits = map(weighted_median, off, count)
@@ -136,17 +136,18 @@ def judge_curve(sums: Array) -> list[Finding | Unknown]:
     best = int(np.argmin(cured))
     mistake, least = MISTAKES[best], cured[best]
     if given <= HOLDS and given < least:
-        return [] if max(fits) > FAILS else [Unknown(CURVE.topic, "albedo hardly varies on surfaces")]
+        return [] if max(fits) > FAILS else [Unknown(CURVE.topic, "albedo hardly changes across surfaces")]
     betters = count[0, off[1 + best] < off[0]].sum() > MOST * count[0].sum()
     if not betters or least > HOLDS or given < max(FAILS, FARTHER * least):
-        return [Unknown(CURVE.topic, "colour does not go with albedo in a simple way, as where there is gloss")]
+        return [Unknown(CURVE.topic, "colour does not follow albedo in a simple way, for example because of gloss")]
     if (
         min(value for other, value in zip(MISTAKES, cured, strict=True) if other.what != mistake.what)
         < 1.5 * least + 0.02
     ):
         return [
             Unknown(
-                CURVE.topic, f"something is wrong, perhaps {mistake.field} is {mistake.what}, but others fit as well"
+                CURVE.topic,
+                f"something is wrong: {mistake.field} may be {mistake.what}, but other mistakes fit as well",
             )
         ]
     measured = (
@@ -181,9 +182,9 @@ def judge_shining(sums: Array) -> list[Finding]:
     pixels, darker, decoded = sums
     if darker <= SOME * pixels:
         return []
-    measured = f"in {percent(darker, pixels)} that shine"
+    measured = f"in {percent(darker, pixels)} with emission"
     if decoded > 0.9 * darker:
-        return [Finding("color", ENCODED, f"darker than emission {measured}, as bright once decoded", LINEAR)]
+        return [Finding("color", ENCODED, f"darker than emission {measured}, and as bright after decoding", LINEAR)]
     return [Finding("color", "darker than the emission in it", measured, f"{LINEAR}, emission included")]
 
 
@@ -207,9 +208,9 @@ def judge_parts(sums: Array) -> list[Finding]:
     return [
         Finding(
             a,
-            f"with {b} and emission not all of color",
+            f"the sum with {b} and emission is not color",
             f"off by more than {200 * ROUNDED:g} % in {percent(off, pixels)}",
-            "split all light, of the same samples, in two; put what shines itself into emission",
+            "split all light of the same samples into the two fields, and put visible lamps and sky into emission",
             "warning" if a in CARRIED else "error",
         )
         for (a, b), pixels, off in zip(PAIRS, *sums, strict=True)
@@ -225,7 +226,7 @@ CURVE = Check(
     frames=2,
     trusts=("color", "albedo", "normal", "depth"),
 )
-SHINING = Check("color: contains emission", shining, judge_shining, "nothing shines", trusts=("color", "emission"))
+SHINING = Check("color: contains emission", shining, judge_shining, "nothing emits light", trusts=("color", "emission"))
 PARTS = Check(
     "color: the sum of its parts",
     unequal,

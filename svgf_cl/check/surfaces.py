@@ -63,8 +63,8 @@ def judge_names(sums: Array) -> list[Finding | Unknown]:
     """Objects that keep together and yet change id were renamed."""
     found, kept, together = sums
     if found < ENOUGH:
-        return [Unknown(NAMES.topic, "too little is found again in the frame before")]
-    measured = f"{percent(found - kept, found)} that show the same surface as before have another id"
+        return [Unknown(NAMES.topic, "too few surfaces are visible in the previous frame, too")]
+    measured = f"{percent(found - kept, found)} that show the same surface as in the previous frame have another id"
     if together - kept > 0.05 * found:
         cure = "number objects once for the whole sequence, not by their order in a frame"
         return [Finding("id", "the same object changes its id between frames", measured, cure)]
@@ -104,11 +104,11 @@ def judge_turns(sums: Array) -> list[Finding | Unknown]:
     """Where most normals turn together, it is the camera that turns."""
     found, kept, alike, turned = sums
     if alike > 0.6 * found:
-        measured = f"from frame to frame they turn, all alike, in {percent(alike, found)} on planes"
+        measured = f"they turn together from frame to frame in {percent(alike, found)} on planes"
         return [Finding("normal", "in view space", measured, "multiply by the rotation from camera to world")]
     if turned and kept > 0.5 * found:
         return []
-    why = "the camera does not turn" if kept > 0.5 * found else "too few planes are found again"
+    why = "the camera does not turn" if kept > 0.5 * found else "too few planes are visible in both frames"
     return [Unknown(WORLD.topic, why)]
 
 
@@ -133,7 +133,7 @@ def judge_deeper(sums: Array) -> list[Finding | Unknown]:
     found, there, lost, refused, none, given, negated, absolute = sums
     if not there:
         if lost < 0.5 * found:
-            return [Unknown(DEEPER.topic, "none was given, and depth changes little")]
+            return [Unknown(DEEPER.topic, "it was not given, and depth changes little")]
         measured = f"depth changes by more than {100 * Settings().depth_threshold:g} % in {percent(lost, found)}"
         return [Finding("motion", "without third component", measured, "give previous minus current depth", "warning")]
     wrong = {
@@ -144,16 +144,18 @@ def judge_deeper(sums: Array) -> list[Finding | Unknown]:
     if best < BETTER * min(given, none):
         what, cure = wrong[best]
         measured = (
-            f"it misses the depth before by {100 * given / found:.2g} %, {100 * best / found:.2g} % with the cure"
+            f"the expected previous depth is wrong by {100 * given / found:.2g} %, "
+            f"by {100 * best / found:.2g} % after the correction"
         )
         return [Finding("motion", what, measured, cure)]
     if refused > 0.5 * found and none < BETTER * given:
         measured = f"with it {percent(refused, found)} lose their history, without it {percent(lost, found)}"
         cure = (
-            "give previous minus current depth, or two components: in a vector pass of four the third is another motion"
+            "give previous minus current depth, or only two components; "
+            "in a vector pass with four, the third is another motion"
         )
         return [Finding("motion", "third component is not the change of depth", measured, cure)]
-    return [] if given < BETTER * min(none, negated) else [Unknown(DEEPER.topic, "no depth changes noticeably")]
+    return [] if given < BETTER * min(none, negated) else [Unknown(DEEPER.topic, "depth does not change noticeably")]
 
 
 NAMES = Check("id: kept by objects", names, judge_names, "no id was given", frames=2, trusts=("depth", "motion"))
@@ -161,10 +163,15 @@ WORLD = Check(
     "normal: in world space",
     turns,
     judge_turns,
-    "too few planes are found again",
+    "too few planes are visible in both frames",
     frames=2,
     trusts=("normal", "depth", "motion"),
 )
 DEEPER = Check(
-    "motion: third component", deeper, judge_deeper, "nothing is found again", frames=2, trusts=("depth", "motion")
+    "motion: third component",
+    deeper,
+    judge_deeper,
+    "no surface is visible in both frames",
+    frames=2,
+    trusts=("depth", "motion"),
 )

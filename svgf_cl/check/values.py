@@ -69,7 +69,7 @@ def negative(view: View) -> Array:
 
 def judge_negative(sums: Array) -> list[Finding]:
     """Light, reflectance, roughness and lengths are never below 0."""
-    cure = "hand over what was sampled, before pixel filters with negative lobes and conversions of colour"
+    cure = "give the samples before pixel filters with negative lobes and before colour conversions"
     return [
         Finding(name, "negative", percent(count, pixels), cure, "warning" if name in CARRIED else "error")
         for name, pixels, count in zip(POSITIVE, *sums, strict=True)
@@ -104,9 +104,9 @@ def judge_constant(sums: Array) -> list[Finding]:
             name,
             "one value everywhere",
             f"in {count:g} of {sums[0].max():g} frames",
-            "leave it out, or hand over what each pixel shows"
+            "leave this field out, or give each pixel its own value"
             if name in OPTIONAL
-            else "hand over what each pixel shows",
+            else "give each pixel its own value",
             "warning" if name in OPTIONAL else "error",
         )
         for name, count in zip(CONSTANT, sums[1], strict=True)
@@ -128,9 +128,9 @@ def judge_lengths(sums: Array) -> list[Finding]:
     hit, unit, encoded, zero, long = sums
     if encoded > 0.9 * hit and unit < 0.5 * hit:
         measured = f"2 n - 1 has unit length in {percent(encoded, hit)}, n in {percent(unit, hit)}"
-        return [Finding("normal", "encoded in 0..1", measured, "give 2 n - 1, and 0 where nothing was hit")]
+        return [Finding("normal", "encoded in 0..1", measured, "give 2 n - 1, and 0 where the ray hit nothing")]
     if zero > 1e-3 * hit:
-        cure = "give every surface its shading normal, and +inf as depth to what is none"
+        cure = "give every surface its shading normal, and depth +inf where there is no surface"
         return [Finding("normal", "zero where there is a depth", f"in {percent(zero, hit)}", cure)]
     # The mean of several samples is shorter, along edges and out of focus; nothing makes it longer.
     if long > 0.01 * hit or unit < 0.1 * hit:
@@ -155,8 +155,8 @@ def judge_misses(sums: Array) -> list[Finding]:
     pixels, *bad = sums
     mistakes = (
         ("negative", "negate the z of a camera that looks along -z"),
-        ("0 where nothing was hit", "give the distance, and +inf where nothing was hit"),
-        ("a finite number where nothing was hit", "give +inf there"),
+        ("0 where there is a normal", "give the distance, and +inf where the ray hit nothing"),
+        ("a finite number where the ray hit nothing", "give +inf there"),
     )
     return [
         Finding("depth", what, f"in {percent(count, pixels)}", cure)
@@ -177,9 +177,9 @@ def judge_hits(sums: Array) -> list[Finding | Unknown]:
     if hit:
         return []
     if not normals:
-        return [Unknown(SEEN.topic, "nothing was hit anywhere, so pictures come out as they are")]
+        return [Unknown(SEEN.topic, "the rays hit nothing, so pictures are not filtered")]
     measured = f"no depth is usable in any of {normals:g} pixels with a normal"
-    return [Finding("depth", "empty everywhere", measured, "hand over the pass that holds the distance")]
+    return [Finding("depth", "empty everywhere", measured, "give the pass that has the distance")]
 
 
 def above_one(view: View) -> Array | None:
@@ -193,7 +193,7 @@ def judge_albedo(sums: Array) -> list[Finding]:
     """No surface reflects more light than it gets."""
     if sums[1] <= SOME * sums[0]:
         return []
-    cure = "give lamps and sky an albedo of 1 and put what they shine into emission; divide 8-bit albedo by 255"
+    cure = "give lamps and sky an albedo of 1 and put their light into emission; divide 8-bit albedo by 255"
     return [Finding("albedo", "above 1, as if it held emitted light", percent(sums[1], sums[0]), cure)]
 
 
@@ -207,7 +207,7 @@ def judge_roughness(sums: Array) -> list[Finding]:
     """No surface is rougher than 1."""
     if sums[1] <= SOME * sums[0]:
         return []
-    cure = "divide 8-bit roughness by 255; the exponent of a lobe is no roughness"
+    cure = "divide 8-bit roughness by 255; the exponent of a lobe is not a roughness"
     return [Finding("roughness", "above 1", percent(sums[1], sums[0]), cure, "warning")]
 
 
@@ -223,7 +223,7 @@ def judge_range(sums: Array) -> list[Finding | Unknown]:
     if above:
         return []
     if one <= SOME * pixels:
-        return [Unknown(RANGE.topic, "no radiance is above 1, as in any dim scene")]
+        return [Unknown(RANGE.topic, "no radiance is above 1, which may be so in a dim scene")]
     measured = f"a channel is exactly 1 in {percent(one, pixels)}, none is above"
     return [Finding("color", "clipped to 0..1", measured, "store float radiance, before exposure and view transform")]
 

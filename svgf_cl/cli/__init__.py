@@ -14,7 +14,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from svgf_cl import __version__
-from svgf_cl.cli import bench, check, compare, denoise, devices, formats, tune, view
+from svgf_cl.cli import bench, check, compare, denoise, devices, export, formats, tune, view
 from svgf_cl.cli.signals import terminated_like_interrupted
 from svgf_cl.errors import SvgfError, one_line
 
@@ -27,13 +27,27 @@ COMMANDS: dict[str, Command] = {
     "denoise": denoise.denoise,
     "compare": compare.compare,
     "view": view.view,
+    "export": export.export,
     "bench": bench.bench,
     "tune": tune.tune,
 }
 # Installed packages may declare more: a function each, under the command's name.
 GROUP = "svgf_cl.commands"
 # As the help lists them; any others come behind.
-ORDER = ("devices", "demo", "scenes", "render", "formats", "check", "denoise", "view", "compare", "bench", "tune")
+ORDER = (
+    "devices",
+    "demo",
+    "scenes",
+    "render",
+    "formats",
+    "check",
+    "denoise",
+    "view",
+    "compare",
+    "export",
+    "bench",
+    "tune",
+)
 INTERRUPTED = 130  # as a shell has it of a program that Ctrl-C ends; so does SIGTERM here
 # What a command says that takes whatever comes.
 ANYTHING = {"ignore_unknown_options": True, "allow_extra_args": True}
@@ -70,7 +84,7 @@ def application() -> typer.Typer:
     # Plain help and errors: they read the same in a terminal, in a log and through grep.
     app = typer.Typer(
         invoke_without_command=True,
-        epilog="Exit codes: 0 fine; 1 a check failed or a run broke off; 2 wrong input; 130 interrupted.",
+        epilog="Exit codes: 0 success; 1 a check or a run failed; 2 wrong input; 130 interrupted.",
         add_completion=False,
         rich_markup_mode=None,
         pretty_exceptions_enable=False,

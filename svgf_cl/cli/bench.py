@@ -25,14 +25,14 @@ def check_ratio(value: float | None) -> float | None:
 
 
 def bench(
-    only: Annotated[str, typer.Option(metavar="REGEX", help="Only benchmarks whose name it is found in.")] = "",
+    only: Annotated[str, typer.Option(metavar="REGEX", help="Only benchmarks whose name matches.")] = "",
     size: Annotated[
         list[str], typer.Option(metavar="WxH", help="Size to time; may be repeated. By default 320x180 to 3840x2160.")
     ] = [],  # noqa: B006  # never changed; typer wants the default spelled here
-    seconds: Annotated[float, typer.Option(metavar="S", min=0.0, help="Time for each denoiser, about.")] = 1.0,
-    ceilings: Annotated[bool, typer.Option(help="Measure the devices' own limits, and show rooflines.")] = True,
+    seconds: Annotated[float, typer.Option(metavar="S", min=0.0, help="Approximate time for each denoiser.")] = 1.0,
+    ceilings: Annotated[bool, typer.Option(help="Measure the limits of the devices, and show rooflines.")] = True,
     list_: Annotated[
-        bool, typer.Option("--list", help="Print the names that would be timed, the ceilings aside; time nothing.")
+        bool, typer.Option("--list", help="Only print the names that would be timed, without the ceilings.")
     ] = False,
     old: Earlier = None,
     fail_above: Annotated[
@@ -56,20 +56,20 @@ def bench(
     json: Annotated[
         Path | None,
         typer.Option(
-            metavar="FILE", help="Also write the results as JSON there; '-' prints them, and no tables, on stdout."
+            metavar="FILE", help="Also write the results as JSON there; '-' prints them on stdout instead of tables."
         ),
     ] = None,
     filter_: FilterName = DEFAULT.name,
     set_: SettingTexts = [],  # noqa: B006
 ) -> None:
-    """Time every kernel and the whole frame, against the device's own ceilings, beside the error.
+    """Time every kernel and the whole frame, and compare them with the limits of the device.
 
-    Runs on every device that works, or on the one that PYOPENCL_CTX names. Input is the camera moving in a built-in
-    room, with albedo and ids. Event time is the device's clock, host time the caller's. Names are such as
-    kalman.atrous.3.1280x720 and kalman.frame.1280x720. How to read it all: docs/benchmarks.md.
+    Runs on every device that works, or on the one that PYOPENCL_CTX names. The input is a camera that moves in a
+    built-in room, with albedo and ids. Event time is measured by the device, host time by the caller. Examples of
+    names are kalman.atrous.3.1280x720 and kalman.frame.1280x720. docs/benchmarks.md explains the results.
 
-    Exit code 1 where --fail-above finds something slower, a line for each on stderr. It is an error where the runs have
-    nothing in common that could be checked.
+    The exit code is 1 if --fail-above finds something slower, with a line for each on stderr. If the two runs have
+    nothing in common that can be checked, that is an error.
 
     \b
     Examples:
@@ -123,9 +123,9 @@ def bench(
 def check_gate(old: Path | None, fail_above: float | None, junit: Path | None) -> None:
     """Raise `SvgfError` where a gate lacks what it needs."""
     if fail_above and not old:
-        raise SvgfError("--fail-above: expected --compare OLD.json beside it, got none")
+        raise SvgfError("--fail-above: expected --compare OLD.json too, got none")
     if junit and not fail_above:
-        raise SvgfError("--junit: expected --fail-above RATIO beside it, got none")
+        raise SvgfError("--junit: expected --fail-above RATIO too, got none")
 
 
 def parse_pattern(text: str) -> re.Pattern[str]:

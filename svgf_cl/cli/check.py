@@ -35,11 +35,11 @@ def check(
     motion_scale: reading.MotionScale = 1.0,
     motion_flip: reading.MotionFlip = "",
 ) -> None:
-    """Look for what is wrong with the frames of a shot, before they are denoised.
+    """Find mistakes in the frames of a shot before they are denoised.
 
-    It finds motion that points the other way, normals in view space, the depth of a depth buffer, colour that was
-    encoded for a display, and more. It needs frames of a moving camera; eight are plenty. What the frames cannot tell
-    is listed as not checked. Exit code 1 where anything is wrong.
+    It finds motion with the wrong sign, normals in view space, depth from a depth buffer, colour that was encoded for
+    a display, and more. It needs frames of a moving camera; eight are enough. The report lists as "not checked" what
+    the frames cannot show. The exit code is 1 if there is any mistake.
 
     \b
     Examples:

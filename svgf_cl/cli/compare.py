@@ -77,44 +77,50 @@ def compare(
         ),
     ] = None,
     quick: Annotated[
-        bool, typer.Option("--quick", help="Three scenes, small and of few samples: minutes in place of an hour.")
+        bool, typer.Option("--quick", help="Three small scenes with few samples: minutes instead of an hour.")
     ] = False,
-    size: Annotated[str, typer.Option(metavar="WxH", help="Of rendered frames [640x360].")] = "",
+    size: Annotated[str, typer.Option(metavar="WxH", help="Size of rendered frames [640x360].")] = "",
     frames: Annotated[
-        int | None, typer.Option(metavar="N", min=1, help="Frames to render [as many as show the scene].")
+        int | None, typer.Option(metavar="N", min=1, help="Number of frames to render [the scene's own].")
     ] = None,
     judged: Annotated[
         int | None,
-        typer.Option(metavar="N", min=1, help="How many of the last frames are judged [all from the ninth on]."),
+        typer.Option(metavar="N", min=1, help="How many of the last frames are measured [all from the ninth on]."),
     ] = None,
-    spp: Annotated[int | None, typer.Option(metavar="N", min=2, help="Samples per pixel of the truth [128].")] = None,
+    spp: Annotated[
+        int | None, typer.Option(metavar="N", min=2, help="Samples per pixel of the reference [128].")
+    ] = None,
     jitter: Annotated[
-        bool, typer.Option(help="Rays move within the pixel, and filters antialias over time; or neither.")
+        bool, typer.Option(help="Move rays within the pixel and antialias over time, or do neither.")
     ] = True,
     exposure: Exposure = 0.0,
     fail_below: Annotated[
         str,
-        typer.Option(metavar="MEASURE=X,...", help="Exit code 1 where the first filter has less, as psnr=30,ssim=0.9."),
+        typer.Option(
+            metavar="MEASURE=X,...", help="Exit code 1 if the first filter has less, such as psnr=30,ssim=0.9."
+        ),
     ] = "",
     fail_above: Annotated[
-        str, typer.Option(metavar="MEASURE=X,...", help="Exit code 1 where it has more, as relmse=0.1,ghost=0.2.")
+        str, typer.Option(metavar="MEASURE=X,...", help="Exit code 1 if it has more, such as relmse=0.1,ghost=0.2.")
     ] = "",
     junit: Annotated[Path | None, typer.Option(metavar="FILE", help="Also write these checks as JUnit XML.")] = None,
     json: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Also write all figures as JSON there; '-' prints them and no tables."),
+        typer.Option(
+            metavar="FILE", help="Also write all figures as JSON there; '-' prints them on stdout instead of tables."
+        ),
     ] = None,
 ) -> None:
-    """Compare filters on scenes or on your own frames, or pictures with their references.
+    """Compare filters on scenes or on your own frames, or compare pictures with their references.
 
-    Scenes are rendered at 1 sample per pixel, filtered, and judged against their path-traced truth, which is kept in
-    the user's cache folder. Frames are those that `svgf-cl denoise` takes. Pictures are EXR files (R, G, B). The page
-    index.html shows pictures, error maps, clips, temporal profiles, curves and tables, and needs nothing else. A scene
-    that is done is kept in DIR/parts: after a break the same command resumes.
+    Scenes are rendered at 1 sample per pixel, filtered, and compared with a path-traced reference, which is stored in
+    the user's cache folder. Frames are files that svgf-cl denoise reads. Pictures are EXR files (R, G, B). The page
+    index.html shows pictures, error maps, clips, temporal profiles, curves and tables, and needs no other file.
+    Finished scenes are stored in DIR/parts: after an interruption the same command continues.
 
-    PSNR, SSIM, FLIP and all that is seen are measured as shown: exposed, clipped to 0..1, in sRGB. relMSE and bias are
-    measured in linear light. docs/comparing.md has every measure. Frames of two folders are paired by number; every
-    reference needs its picture. With two pictures or folders the limits hold for every frame.
+    PSNR, SSIM, FLIP and everything visible are measured as shown: exposed, clipped to 0..1, in sRGB. relMSE and bias
+    are measured in linear light. docs/comparing.md explains every measure. Frames of two folders are paired by
+    number; every reference needs a picture. With two pictures or folders, every frame must keep the limits.
 
     \b
     Examples:
@@ -128,7 +134,7 @@ def compare(
 
     limits = Limits.parse(fail_below, fail_above)
     if junit and not limits:
-        raise SvgfError("--junit: expected --fail-below or --fail-above beside it, got none")
+        raise SvgfError("--junit: expected --fail-below or --fail-above too, got none")
     check_files(json, junit)
     is_made = reference is None and are_pictures(inputs)
     if is_made or reference is not None:
@@ -173,7 +179,7 @@ def are_pictures(inputs: Sequence[str]) -> bool:
         require(Path(text))
     if pictures and len(pictures) < len(inputs):
         scene = next(text for text in inputs if text not in pictures)
-        raise SvgfError(f"expected scenes or pictures, got both: {scene} is a scene, {pictures[0]} is none")
+        raise SvgfError(f"expected scenes or pictures, got both: {scene} is a scene, {pictures[0]} is not")
     return bool(pictures)
 
 
@@ -189,9 +195,7 @@ def refuse_rendering(options: Mapping[str, object]) -> None:
     """Raise `SvgfError` where an option of rendering was given though nothing is rendered."""
     for name, value in options.items():
         if value:
-            raise SvgfError(
-                f"{name}: expected scenes to render beside it, got pictures or frames that are made already"
-            )
+            raise SvgfError(f"{name}: expected only scenes to render, got pictures or frames too")
 
 
 def of_pictures(inputs: Sequence[str], filters: str | None) -> Footage:
@@ -204,7 +208,7 @@ def of_pictures(inputs: Sequence[str], filters: str | None) -> Footage:
             "frames to be filtered want --reference"
         )
     if filters is not None:
-        raise SvgfError("--filters: expected scenes, or frames with --reference, got pictures that are made already")
+        raise SvgfError("--filters: expected scenes, or frames with --reference, got finished pictures")
     return open_pictures(Path(inputs[0]), Path(inputs[1]))
 
 
@@ -213,7 +217,7 @@ def of_frames(inputs: Sequence[str], reference: Path, *, jitter: bool) -> Footag
     from svgf_cl.compare.recorded import open_frames
 
     if not inputs:
-        raise SvgfError("--reference: expected frames beside it, got none")
+        raise SvgfError("--reference: expected frames too, got none")
     return open_frames([Path(text) for text in inputs], reference, jitter=jitter)
 
 

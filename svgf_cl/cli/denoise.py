@@ -74,7 +74,7 @@ def denoise(
         bool,
         typer.Option(
             "--passes/--no-passes",
-            help="Denoise light passes one by one, so that they still add up to the picture; else the picture alone.",
+            help="Denoise light passes one by one, which still add up to the picture, or only the picture.",
         ),
     ] = True,
     prefilter: Annotated[
@@ -86,12 +86,10 @@ def denoise(
     ] = "auto",
     layer: Annotated[
         str | None,
-        typer.Option(
-            metavar="NAME", help="Write what is denoised to a new layer beside the noisy channels, which stay."
-        ),
+        typer.Option(metavar="NAME", help="Add the result as a new layer, and keep the noisy channels."),
     ] = None,
     plain: Annotated[
-        bool, typer.Option("--plain", help="Write the picture alone, as R G B, and no other channel.")
+        bool, typer.Option("--plain", help="Write only the picture, as R G B, and no other channel.")
     ] = False,
     png: Annotated[bool, typer.Option("--png", help="Also write every picture tone-mapped as PNG.")] = False,
     exposure: Exposure = 0.0,
@@ -102,7 +100,7 @@ def denoise(
     view_layer: reading.ViewLayer = None,
     color: Annotated[
         Path | None,
-        typer.Option(metavar="FILES", help="The same as FRAMES: the picture, where each pass has files of its own."),
+        typer.Option(metavar="FILES", help="The same as FRAMES: the picture, if each pass has its own files."),
     ] = None,
     albedo: Separate = None,
     normal: Separate = None,
@@ -114,15 +112,15 @@ def denoise(
     motion_scale: reading.MotionScale = 1.0,
     motion_flip: reading.MotionFlip = "",
 ) -> None:
-    """Denoise the EXR frames of a shot: those of Blender, Mitsuba, pbrt, Arnold, V-Ray, or of our own tracer.
+    """Denoise the EXR frames of a shot from Blender, Mitsuba, pbrt, Arnold, V-Ray or our own tracer.
 
-    Which renderer wrote them is told from the first file (svgf-cl formats lists what is read); one line says which
-    passes were found. Writes one EXR a frame. The picture is denoised (linear HDR, 32-bit floats), and so are light
-    passes that it is the sum of; all else in the frame's file passes through: other channels, Cryptomatte, windows,
-    attributes. All frames count as one shot: each uses the ones before it.
+    The first file shows which renderer wrote the frames (svgf-cl formats lists what is read). One line says which
+    passes were found. The command writes one EXR file for each frame. It denoises the picture (linear HDR, 32-bit
+    floats) and the light passes that add up to it. Everything else in the file is unchanged: other channels,
+    Cryptomatte, windows, attributes. All frames must be of one shot, because each uses the frames before it.
 
     If it is interrupted, run the same command again. All frames are then filtered again, because each picture depends
-    on all frames before it, but pictures that are there already and are the same are kept.
+    on all frames before it, but existing files with the same content are kept.
 
     \b
     Examples:
@@ -138,7 +136,7 @@ def denoise(
     if layer is not None and not re.fullmatch(r"[^.\s][^.]*", layer):
         raise SvgfError(f"--layer: expected a name without dots, got {shown(layer)}")
     if plain and layer:
-        raise SvgfError("--layer: expected no --plain, which writes nothing beside the picture")
+        raise SvgfError("--layer: expected no --plain, which writes only the picture")
     fields = {"albedo": albedo, "normal": normal, "depth": depth, "motion": motion, "id": id_}
     if bool(frames) == bool(color):
         raise SvgfError(f"denoise: expected either FRAMES or --color, got {'both' if color else 'neither'}")
@@ -217,5 +215,5 @@ def chosen(sources: list[Path], span: str | None) -> range:
     places = [place for place, path in enumerate(sources) if first <= number_of(path) <= last]
     if not places:
         numbers = f"{number_of(sources[0])}-{number_of(sources[-1])}"
-        raise SvgfError(f"--frames: expected some of {numbers}, which are there, got {span}")
+        raise SvgfError(f"--frames: expected frames among {numbers}, got {span}")
     return range(places[0], places[-1] + 1)

@@ -13,11 +13,11 @@ from svgf_cl.device.tuning import stored_tuning
 
 
 def devices() -> None:
-    """List every OpenCL device and whether it really works.
+    """List every OpenCL device and test whether it works.
 
-    A device works if it builds and runs a small kernel; if not, the reason is shown. The default, marked *, is what
-    the other commands use; PYOPENCL_CTX picks another by its name in the first column. A tuned device runs as
-    svgf-cl tune found best.
+    A device works if it builds and runs a small kernel; otherwise the reason is shown. Other commands use the
+    default, marked *; PYOPENCL_CTX chooses another one by its name in the first column. A tuned device uses the
+    settings that svgf-cl tune found.
 
     \b
     Examples:

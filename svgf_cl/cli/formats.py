@@ -10,8 +10,8 @@ from svgf_cl.io.readers.reader import Reader
 def formats() -> None:
     """List the renderers whose frames are read, and the passes that fields are read from.
 
-    Which one wrote a file is told from the file; --format NAME of denoise and check says it. Capitals, spaces and signs
-    in the names of passes do not matter. Any other renderer's passes are read with --map FIELD=PASS.
+    A file shows which renderer wrote it; if it does not, use --format NAME with denoise and check. Upper case, spaces
+    and punctuation in the names of passes do not matter. Read the passes of any other renderer with --map FIELD=PASS.
 
     \b
     Examples:

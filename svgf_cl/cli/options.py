@@ -39,7 +39,7 @@ Frames = Annotated[
     ),
 ]
 AllowGaps = Annotated[
-    bool, typer.Option("--allow-gaps", help="Take a shot that lacks frames; begin anew behind each gap, as at a cut.")
+    bool, typer.Option("--allow-gaps", help="Accept a shot that lacks frames; start again after each gap, as at a cut.")
 ]
 Output = Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Folder to write to; made if missing.")]
 Exposure = Annotated[
@@ -96,7 +96,7 @@ def parse_settings(filter_: str, texts: Iterable[str], option: str = "--set") ->
         name, _, value = text.partition("=")
         if name not in known or not value:
             raise SettingsError(
-                f"{option}: expected NAME=VALUE with a name out of {', '.join(known)} (filter {filter_}), got {text!r}"
+                f"{option}: expected NAME=VALUE with a name among {', '.join(known)} (filter {filter_}), got {text!r}"
                 + hint(name, known)
             )
         try:

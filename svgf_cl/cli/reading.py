@@ -19,7 +19,7 @@ Format = Annotated[
     typer.Option(
         "--format",
         metavar="NAME",
-        help=f"Renderer of the frames: {' or '.join(READERS)}. By default it is told from the first file.",
+        help=f"Renderer of the frames: {' or '.join(READERS)}. By default, the first file shows it.",
     ),
 ]
 Maps = Annotated[
@@ -42,7 +42,7 @@ Cameras = Annotated[
     ),
 ]
 StillCamera = Annotated[
-    bool, typer.Option("--still-camera", help="If neither files nor cameras tell motion: nothing moves.")
+    bool, typer.Option("--still-camera", help="If neither files nor cameras give motion, assume that nothing moves.")
 ]
 MotionScale = Annotated[
     float, typer.Option("--motion-scale", metavar="X", help="Multiply motion by X, if it is not in pixels.")

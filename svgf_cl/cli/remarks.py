@@ -1,4 +1,4 @@
-"""What is said of frames before they are denoised: the fields that are read, and what is wrong in the first frames."""
+"""Remarks on frames before they are denoised: the fields that are read, and mistakes in the first frames."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ FIRST = 8  # frames that are checked; they tell nearly all that more would
 # What it costs not to have a field.
 COSTS = {
     "albedo": "textures are smoothed like light",
-    "id": "objects are told apart by depth and normal alone",
-    "emission": "what shines is smoothed too",
+    "id": "objects are distinguished only by depth and normal",
+    "emission": "lamps and sky are smoothed too",
     OPTIONAL: "history is lost where the camera moves along its axis",
 }
 PARTS = ("direct", "indirect")  # of the light: `Reading.lights` has them
@@ -52,7 +52,7 @@ def described(shot: Shot, first: ShotFrame) -> str:
     return "; ".join(parts)
 
 
-BLURRED = "each frame is denoised alone; turn motion blur off, with which renderers write no motion, and blur later"
+BLURRED = "each frame is denoised alone; with motion blur, renderers write no motion: turn it off, and blur later"
 
 
 class Remarks:
@@ -102,11 +102,14 @@ class Remarks:
         if not any(finding.field == "depth" for finding in report.findings):
             found += [f"depth: {unknown.why}" for unknown in report.unknown if unknown.topic == SEEN.topic]
         if self._lacks_motion:
-            found.append(f"motion: 0 in all pixels, though things move; {BLURRED}")
+            found.append(f"motion: 0 in all pixels, but objects move; {BLURRED}")
         for line in found:
             warnings.warn(line, stacklevel=2)
         if found:
-            warnings.warn("told from the first frames; svgf-cl check says more, --no-check leaves it out", stacklevel=2)
+            warnings.warn(
+                "these warnings are about the first frames; svgf-cl check says more, --no-check turns them off",
+                stacklevel=2,
+            )
 
 
 def look_at_surfaces(shot: Shot, index: int, source: ShotFrame) -> None:
@@ -121,6 +124,6 @@ def require_surfaces(path: Path, frame: Frame) -> None:
     # A great number may stand for a miss.
     if behind.size and not (hit < FAR * np.median(behind)).any():
         raise FileError(
-            f"{path}: expected depth above 0 where there is a surface, got it negative everywhere; "
+            f"{path}: expected depth above 0 on surfaces, got negative depth everywhere; "
             "negate the z of a camera that looks along -z"
         )

@@ -1,4 +1,4 @@
-"""``svgf-cl tune``: the fastest vector width, exponential, work-group and layout of rows for this device."""
+"""``svgf-cl tune``: the fastest vector width, exponential, work-group, layout of rows and copies for this device."""
 
 from __future__ import annotations
 
@@ -23,23 +23,26 @@ REMEDY = "make the machine idle or choose a smaller --size, and run it again"
 def tune(
     size: Size = "1280x720",
     seconds: Annotated[
-        float, typer.Option(metavar="S", min=0.0, help="Time for the search; what it leaves untried is told.")
+        float,
+        typer.Option(metavar="S", min=0.0, help="Time for the search; candidates that were not tried are reported."),
     ] = SECONDS,
     json: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Also write there what was tried, as JSON; anew after each trial."),
+        typer.Option(metavar="FILE", help="Also write all trials there as JSON, after each trial."),
     ] = None,
-    store: Annotated[bool, typer.Option(help="Remember what was found; else only tell it.")] = True,
-    reset: Annotated[bool, typer.Option("--reset", help="Forget what was found for this device, and leave.")] = False,
+    store: Annotated[bool, typer.Option(help="Store the result, or only print it.")] = True,
+    reset: Annotated[bool, typer.Option("--reset", help="Delete the stored result of this device, and exit.")] = False,
 ) -> None:
-    """Find how this device denoises fastest, and remember it for its driver.
+    """Find the fastest settings of this device, and store them for this device and driver.
 
-    Times vector widths, exponentials, work-groups and alignments of rows against the default on a built-in room, in
-    less than a minute, and stores the fastest where every later run finds it; the default, unless something is faster
-    beyond noise. Pictures stay the same to within rounding. PYOPENCL_CTX picks another device.
+    Compares vector widths, exponentials, work-groups and alignments of rows with the default on a built-in room, in
+    less than a minute. It stores the fastest, which later runs use; if nothing is faster beyond noise, it stores the
+    default. On devices with memory of their own it then tries copies through pinned memory. Pictures stay the same
+    apart from rounding. PYOPENCL_CTX chooses another device.
 
-    Exit code 1, and nothing is stored, where the machine was too busy to tell: candidates were left out for lack of
-    time, or the default's own time wavers. Make the machine idle or choose a smaller --size, and run it again.
+    If the machine was too busy for a reliable result, nothing is stored and the exit code is 1: there was no time for
+    all candidates, or the default's own time varied too much. Then stop other programs or choose a smaller --size,
+    and run it again.
 
     \b
     Examples:
@@ -69,17 +72,21 @@ def tune(
             note(UNFINISHED)
 
         final = tuner.search(step)
-    note(verdict(final))
+    chosen = final.tuning if final.is_faster else default_tuning(device)
+    copies = tuner.race_copies(chosen)
+    if copies and copies.is_faster:
+        chosen = copies.tuning
+    found = "; ".join([verdict(final), *([f"calls from numpy to numpy: {verdict(copies)}"] if copies else [])])
+    note(found)
     columns = ("vector", "exponential", "rows", "group", "ms", "Mpixel/s", "time/default")
     show(f"{size}, in the order tried", columns, [trial_row(trial, shape) for trial in tuner.trials])
     for trial in tuner.trials:
         if trial.fault:
             print(f"rejected {trial.tuning}: {trial.fault}")
-    print(verdict(final))
+    print(found)
     if tuner.doubts:
         typer.echo(f"nothing is stored: {', and '.join(tuner.doubts)}; {REMEDY}", err=True)
         raise typer.Exit(1)
-    chosen = final.tuning if final.is_faster else default_tuning(device)
     print(f"{chosen}: stored in {store_tuning(device, chosen)}" if store else f"{chosen}: not stored, as asked")
 
 
@@ -100,7 +107,7 @@ def trial_row(trial: Trial, shape: Shape) -> tuple[str, ...]:
 
 
 def verdict(final: Trial) -> str:
-    """Say what came of the final between the fastest candidate and the default."""
+    """Say what came of the final between a candidate and the default."""
     if not final.ratios:
         return "nothing is faster than the default"
     wins = sum(ratio < 1 for ratio in final.ratios)

@@ -97,7 +97,7 @@ def compete(footage: Footage, makers: Mapping[str, Maker], exposure: float, adva
     """
     judged = list(footage.judged)
     if not judged:
-        raise ValueError(f"{footage.name}: expected a truth of at least one frame")
+        raise ValueError(f"{footage.name}: expected a reference of at least one frame")
     truths = footage.truths(advance)
     shown = judged[len(judged) // 2]
     switches = switches_in([truths[number] for number in judged])

@@ -68,7 +68,7 @@ def parsed(option: str, text: str) -> dict[str, float]:
     for part in filter(None, text.split(",")):
         key, _, number = part.partition("=")
         if key not in KNOWN:
-            raise SvgfError(f"{option}: expected MEASURE=NUMBER with a measure out of {', '.join(KNOWN)}, got {part!r}")
+            raise SvgfError(f"{option}: expected MEASURE=NUMBER with a measure among {', '.join(KNOWN)}, got {part!r}")
         if key in found:
             raise SvgfError(f"{option}: expected each measure once, got {key} twice")
         try:

@@ -128,7 +128,7 @@ def open_frames(frames: Sequence[Path], reference: Path, *, jitter: bool) -> Rec
     """
     files = find_frames(frames, allow_gaps=True)
     for path in sorted(after_gaps(files)):
-        raise FileError(f"{path}: expected the frame before it, from which filters go on, found none")
+        raise FileError(f"{path}: expected the previous frame, which filters need, found none")
     paths = {number_of(path): path for path in files}
     return Recorded(paths, find_references(reference, list(paths)), jitter)
 

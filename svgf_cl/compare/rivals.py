@@ -159,7 +159,7 @@ def rival(name: str, parts: Sequence[str], parse: Parser) -> Rival:
         require_oidn()
         return Rival(name, None)
     if kind not in FILTERS:
-        raise SvgfError(f"--filters: expected names out of {', '.join((*FILTERS, *OTHERS))}, got {kind!r}")
+        raise SvgfError(f"--filters: expected names among {', '.join((*FILTERS, *OTHERS))}, got {kind!r}")
     says_taa = any(text.startswith("taa=") for text in settings)
     return Rival(name, parse(kind, settings, "--filters"), says_taa)
 

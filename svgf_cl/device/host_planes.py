@@ -59,17 +59,25 @@ class HostPlanes:
         planes: NDArray[Any] = self._planes[resource][quantity].copy()
         return planes
 
-    def upload(self, queue: cl.CommandQueue, resource: Resource, to: Place, corner: Corner, size: Shape) -> None:
-        """Copy the part of the image that begins at `corner` to a place on the device."""
+    def upload(
+        self, queue: cl.CommandQueue, resource: Resource, to: Place, corner: Corner, size: Shape
+    ) -> list[cl.Event]:
+        """Put copies of the part of the image that begins at `corner` to a place on the device on the queue."""
+        copies = []
         for quantity, planes in self._planes[resource].items():
             where = rectangle(resource, quantity, planes, to, corner, size)
-            cl.enqueue_copy(queue, to.memory, planes, **where)  # type: ignore[call-overload]  # "origin" in its types
+            copies.append(cl.enqueue_copy(queue, to.memory, planes, is_blocking=False, **where))
+        return copies
 
-    def download(self, queue: cl.CommandQueue, resource: Resource, source: Place, corner: Corner, size: Shape) -> None:
-        """Copy a place on the device to the part of the image that begins at `corner`."""
+    def download(
+        self, queue: cl.CommandQueue, resource: Resource, source: Place, corner: Corner, size: Shape
+    ) -> list[cl.Event]:
+        """Put copies of a place on the device to the part of the image that begins at `corner` on the queue."""
+        copies = []
         for quantity, planes in self._planes[resource].items():
             where = rectangle(resource, quantity, planes, source, corner, size)
-            cl.enqueue_copy(queue, planes, source.memory, **where)  # type: ignore[call-overload]
+            copies.append(cl.enqueue_copy(queue, planes, source.memory, is_blocking=False, **where))
+        return copies
 
 
 @dataclass(frozen=True)
@@ -92,7 +100,7 @@ class Place:
 
 def rectangle(
     resource: Resource, quantity: Quantity, planes: NDArray[Any], place: Place, corner: Corner, size: Shape
-) -> dict[str, tuple[int, ...]]:
+) -> dict[str, Any]:
     """What pyopencl has to know to copy a part of every plane of a quantity; sizes along rows are in bytes."""
     nbytes, layout = planes.itemsize, place.layout
     (count, height, width), (top, left) = planes.shape, place.corner

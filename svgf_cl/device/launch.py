@@ -35,6 +35,7 @@ class Launch:
         self.entry = entry
         self._kernel = kernel
         self._grid = work_items, work_group
+        self._fixed = fixed  # a kernel does not keep the memory of its arguments
         self._index = {name: index for index, name in enumerate(entry.arguments)}
         self._user = {each.argument: each.of for each in entry.accesses if isinstance(each.of, str)}
         for name, value in fixed.items():

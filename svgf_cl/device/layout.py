@@ -47,13 +47,12 @@ class Layout:
         """Elements of a plane."""
         return self.rows * self.pitch
 
-    def work_items(self, vector_width: int, group: tuple[int, int], step: int = 1) -> tuple[int, int]:
-        """Vectors along a row and rows, each rounded up to whole work-groups; kernels skip those outside the image.
+    def vectors(self, width: int, step: int = 1) -> tuple[int, int]:
+        """How many vectors of so many pixels there are along a row, and how many rows.
 
-        Rows are rounded up to whole steps first: atrous.cl goes through every `step`-th of them in turn.
+        Rows are rounded up to whole steps: atrous.cl goes through every `step`-th of them in turn.
         """
-        rows = rounded_up(self.height, step)
-        return rounded_up(-(-self.width // vector_width), group[0]), rounded_up(rows, group[1])
+        return -(-self.width // width), rounded_up(self.height, step)
 
     def indexable(self, planes: int) -> bool:
         """Whether the kernels' 32-bit indices reach every element of a buffer of so many planes."""

@@ -115,8 +115,13 @@ def build(context: cl.Context, device: cl.Device, name: str, defines: Mapping[st
 
 
 def options_of(name: str, defines: Mapping[str, Define]) -> tuple[str, ...]:
-    """Return the compiler's options for a source file: `CONSTANTS` and these macros, as far as it mentions them."""
-    return options(mentioned(name, {**CONSTANTS, **defines}))
+    """Return the compiler's options for a source file, with its `macros`."""
+    return options(macros(name, defines))
+
+
+def macros(name: str, defines: Mapping[str, Define]) -> dict[str, str]:
+    """Return the text of each macro of a source file: `CONSTANTS` and these, as far as it mentions them."""
+    return {macro: _literal(value) for macro, value in mentioned(name, {**CONSTANTS, **defines}).items()}
 
 
 @functools.lru_cache(maxsize=64)

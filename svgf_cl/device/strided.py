@@ -46,7 +46,7 @@ def copies_rows(device: cl.Device) -> bool:
 
 
 def buffer_of(array: cl_array.Array) -> cl.Buffer:
-    """The buffer that an Array lies in; one from a pool is used just like it."""
+    """The buffer that an Array lies in; memory of a pool, and SVM, are handed to kernels just like one."""
     return cast("cl.Buffer", array.base_data)
 
 

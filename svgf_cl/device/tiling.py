@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from svgf_cl.device.layout import WIDEST_VECTOR, Layout
+from svgf_cl.device.memory import Memory
 from svgf_cl.device.memory_plan import Slot, memory_slots
 from svgf_cl.device.tiles import Tile, best_window, tiles_of, window_lengths
 from svgf_cl.filters.margins import widest_margin
@@ -88,16 +89,15 @@ class Tiling:
     def sizes(self, window: Shape) -> list[int]:
         """Bytes of every buffer on the device for windows of this shape."""
         parts = ((self.layout(window), self.slots), (self.layout(self.past_window(window)), self.past_slots))
-        own = [layout.every(slot.spacing).nbytes(slot.planes.depth) for layout, slots in parts for slot in slots]
+        own = [size for layout, slots in parts for size in Memory(layout, slots).sizes]
         user = self.pipeline.user_nbytes
         copied = [*user.values(), user.get("motion", 0)]  # a second one where motion leads into several windows
         return own + [nbytes * window[0] * window[1] for nbytes in copied]
 
     def whole(self) -> list[int]:
         """Bytes of every buffer on the device for whole frames, without tiles."""
-        layout = self.layout(self.shape)
-        own = [layout.every(slot.spacing).nbytes(slot.planes.depth) for slot in memory_slots(self.pipeline)]
-        return own + [nbytes * self.shape[0] * self.shape[1] for nbytes in self.pipeline.user_nbytes.values()]
+        own = Memory(self.layout(self.shape), memory_slots(self.pipeline)).sizes
+        return [*own] + [nbytes * self.shape[0] * self.shape[1] for nbytes in self.pipeline.user_nbytes.values()]
 
     def indexable(self, window: Shape) -> bool:
         """Whether the kernels' indices reach all pixels of the largest buffer."""

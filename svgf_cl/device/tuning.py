@@ -1,5 +1,5 @@
-"""`Tuning`: how kernels are cut into vectors and work-groups, rows laid out and exponentials taken, and the best known
-for each device.
+"""`Tuning`: how kernels are cut into vectors and work-groups, rows laid out, exponentials taken and arrays copied, and
+the best known for each device.
 """
 
 from __future__ import annotations
@@ -44,6 +44,9 @@ class Tuning:
     exponential : str, "polynomial" or "exp2"
         How precise weights are computed: by a polynomial, relative error below 4e-6, or by OpenCL's function, at most
         4 ulp. Fast weights are the same with both.
+    pinned_copies : bool
+        Whether copies of numpy arrays to the device and back go by way of pinned memory. A device that works in the
+        host's memory seldom copies any.
 
     Raises
     ------
@@ -55,6 +58,7 @@ class Tuning:
     work_group: tuple[int, int]
     row_alignment: int = ROW_ALIGNMENT
     exponential: str = "polynomial"
+    pinned_copies: bool = False
 
     def __post_init__(self) -> None:
         if not isinstance(self.vector_width, int) or self.vector_width not in VECTOR_WIDTHS:
@@ -70,12 +74,14 @@ class Tuning:
             )
         if self.exponential not in EXPONENTIALS:
             raise SvgfError(f"Tuning.exponential: expected one of {EXPONENTIALS}, got {shown(self.exponential)}")
+        if not isinstance(self.pinned_copies, bool):
+            raise SvgfError(f"Tuning.pinned_copies: expected True or False, got {shown(self.pinned_copies)}")
 
     def __str__(self) -> str:
         along, down = self.work_group
         return (
             f"vectors of {self.vector_width}, {self.exponential}, rows aligned to {self.row_alignment}, "
-            f"work-groups of {along}x{down}"
+            f"work-groups of {along}x{down}{', pinned copies' if self.pinned_copies else ''}"
         )
 
     @property
@@ -96,6 +102,8 @@ class Tuning:
 
 # What suits most GPUs: a vector is one pixel, a work-group a tile of whole warps, and exp2 a single instruction.
 GPU_TUNING = Tuning(vector_width=1, work_group=(32, 4), exponential="exp2")
+# What suits most CPUs of today, whose native vectors are of 8 floats or more.
+CPU_TUNING = Tuning(vector_width=16, work_group=CPU_WORK_GROUP)
 
 
 def best_tuning(device: cl.Device) -> Tuning:

@@ -6,16 +6,20 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, NamedTuple, TypeGuard, cast
+from typing import NamedTuple, TypeGuard
 
 import numpy as np
 import pyopencl as cl
 import pyopencl.array as cl_array
 
+from svgf_cl.device.array_checks import check_apart, check_given
+from svgf_cl.device.gl_objects import gl_objects
+from svgf_cl.device.host_copies import HostCopies, PinnedCopies
 from svgf_cl.device.opencl_errors import allocate, lack_of_room
-from svgf_cl.device.strided import StridedCopies, buffer_of, is_aligned, is_apart, is_plain, span
+from svgf_cl.device.strided import StridedCopies, buffer_of, is_plain
+from svgf_cl.device.svm import InFlight
 from svgf_cl.filters.pipeline import OUT
-from svgf_cl.frame import ALPHA, check_array, element_type, wrong
+from svgf_cl.frame import ALPHA, element_type
 from svgf_cl.interchange import UserArray
 
 
@@ -39,12 +43,25 @@ class Exchange:
         Where the result is on the device in the end.
     before, after : sequence of Copy
         To be made before the passes and after them.
+    given : sequence of Array
+        The user's Arrays.
     """
 
     buffers: dict[str, cl.Buffer]
     landing: cl.Buffer
     before: Sequence[Copy]
     after: Sequence[Copy]
+    given: Sequence[cl_array.Array]
+
+    @property
+    def gl_objects(self) -> list[cl.MemoryObjectHolder]:
+        """Buffers of OpenGL that are to be acquired for this frame."""
+        return gl_objects(self.given)
+
+    @property
+    def svm(self) -> list[cl.SVMPointer]:
+        """Shared virtual memory that has to live until the frame is done."""
+        return [value.base_data for value in self.given if isinstance(value.base_data, cl.SVMPointer)]
 
 
 class UserArrays:
@@ -53,15 +70,25 @@ class UserArrays:
     Where the call waits for a numpy result anyway, and the device works in the host's memory, numpy arrays stay where
     they are. Else they are copied, by way of buffers that are kept from frame to frame. Arrays are used as they are,
     unless they have strides or an offset, or alpha: these are copied on the device, from and to buffers that are kept.
+
+    Parameters
+    ----------
+    queue : pyopencl.CommandQueue
+    pinned : bool
+        Whether copies of numpy arrays go by way of pinned memory.
     """
 
-    def __init__(self, queue: cl.CommandQueue) -> None:
+    def __init__(self, queue: cl.CommandQueue, *, pinned: bool) -> None:
         self._queue = queue
+        self._host = (PinnedCopies if pinned else HostCopies)(queue)
+        self._in_flight = InFlight(queue)
         self._kept: dict[str, cl.Buffer] = {}
         self._strided: StridedCopies | None = None  # built where it is needed
 
     def exchange(self, fields: Mapping[str, UserArray], result: UserArray) -> Exchange:
         """What the passes work on for these fields and this result.
+
+        Copies of numpy arrays are on the queue when this returns; `in_use` waits for them.
 
         Parameters
         ----------
@@ -72,22 +99,24 @@ class UserArrays:
         Raises
         ------
         FrameError, ArgumentError
-            If an Array is not memory of this queue's context, or the passes would write to what they read.
+            If kernels on this queue cannot work in an Array's memory, or the passes would write to what they read.
         DeviceError
             If the device has no room.
         """
         arrays = {OUT: result} | {name: as_read(name, value) for name, value in fields.items()}
         given = {name: value for name, value in arrays.items() if isinstance(value, cl_array.Array)}
         for name, value in given.items():
-            check_given(name, value, self._queue.context)
-        direct = {name: buffer_of(value) for name, value in given.items() if is_plain(value)}
+            check_given(name, value, self._queue)
+        direct = {name: value for name, value in given.items() if is_plain(value)}
         if ALPHA in fields:
             direct.pop(OUT, None)
-        check_apart(direct)
+        elif OUT in direct or isinstance(result, np.ndarray):
+            check_apart({name: value for name, value in direct.items() if name != OUT}, result)
         before = {name: self._gather(name, value) for name, value in given.items() if name not in (OUT, *direct)}
-        gathered = {name: buffer_of(copy.target) for name, copy in before.items()}
         host = {name: value for name, value in arrays.items() if isinstance(value, np.ndarray)}
-        buffers = direct | gathered | self._from_host(host, result)
+        buffers = {name: buffer_of(value) for name, value in direct.items()}
+        buffers |= {name: buffer_of(copy.target) for name, copy in before.items()}
+        buffers |= self._from_host(host, result)
         landing = buffers[OUT] if OUT in buffers else buffer_of(given[OUT])
         after = []
         if ALPHA in fields or OUT not in buffers:
@@ -96,7 +125,8 @@ class UserArrays:
             buffers[OUT] = buffer_of(after[0].source)
         if before or after:
             self._strided = self._strided or StridedCopies(self._queue)
-        return Exchange(buffers, landing, tuple(before.values()), tuple(after))
+        self._upload(host, buffers)
+        return Exchange(buffers, landing, tuple(before.values()), tuple(after), tuple(given.values()))
 
     def copy(self, copies: Sequence[Copy]) -> list[tuple[str, cl.Event]]:
         """Put copies on the queue: label and event of each."""
@@ -107,6 +137,7 @@ class UserArrays:
     def drop_copies(self) -> None:
         """Give back what was kept for frames of another size or with other fields."""
         self._kept.clear()
+        self._host.forget()
 
     @contextmanager
     def in_use(self, exchange: Exchange, result: UserArray) -> Iterator[None]:
@@ -116,10 +147,13 @@ class UserArrays:
             if self._works_in_place(result):
                 self._show(exchange.landing, result)
             elif isinstance(result, np.ndarray):
-                cl.enqueue_copy(self._queue, result, exchange.landing)
-        finally:
-            if self._works_in_place(result):  # after an error too: passes before it may still be at work
+                self._host.download(OUT, exchange.landing, result)
+        finally:  # after an error too: what was put on the queue before it may still be at work
+            waits = isinstance(result, np.ndarray)
+            if waits:
                 self._queue.finish()
+            self._in_flight.keep([] if waits else exchange.svm)
+            self._host.wait()
 
     def _works_in_place(self, result: UserArray) -> TypeGuard[np.ndarray]:
         return isinstance(result, np.ndarray) and result.flags.aligned and shares_memory(self._queue.device)
@@ -146,9 +180,9 @@ class UserArrays:
         return cl_array.Array(self._queue, shape, dtype, data=buffer)
 
     def _from_host(self, arrays: Mapping[str, np.ndarray], result: UserArray) -> dict[str, cl.Buffer]:
-        """Buffers of numpy arrays: their own memory where the device works in it, else copies."""
+        """Buffers of numpy arrays: their own memory where the device works in it, else kept ones that take copies."""
         wrapped = self._wrapped(arrays) if self._works_in_place(result) else {}
-        return wrapped | {name: self._copied(name, value) for name, value in arrays.items() if name not in wrapped}
+        return wrapped | {name: self._keep(name, value.nbytes) for name, value in arrays.items() if name not in wrapped}
 
     def _wrapped(self, arrays: Mapping[str, np.ndarray]) -> dict[str, cl.Buffer]:
         """Buffers that are the arrays' own memory; no two may overlap (OpenCL 1.2, 5.2.1), so others are left out."""
@@ -158,12 +192,15 @@ class UserArrays:
                 chosen[name] = value
         return {name: wrap(self._queue, value) for name, value in chosen.items()}
 
-    def _copied(self, name: str, value: np.ndarray) -> cl.Buffer:
-        """A buffer that stays with the denoiser; a field's values are in it when this returns."""
-        buffer = self._keep(name, value.nbytes)
-        if name != OUT:
-            cl.enqueue_copy(self._queue, buffer, value, is_blocking=True)
-        return buffer
+    def _upload(self, arrays: Mapping[str, np.ndarray], buffers: Mapping[str, cl.Buffer]) -> None:
+        """Put copies of fields to kept buffers on the queue; where one fails, those before it are waited for."""
+        try:
+            for name, value in arrays.items():
+                if name != OUT and buffers[name] is self._kept.get(name):
+                    self._host.upload(name, value, buffers[name])
+        except BaseException:
+            self._host.wait()
+            raise
 
     def _keep(self, name: str, nbytes: int) -> cl.Buffer:
         """The buffer of this name and size: that of the last frame, where it had one."""
@@ -190,24 +227,6 @@ def as_read(name: str, value: UserArray) -> UserArray:
         return np.require(value, element_type(name), ("C", "ALIGNED"))
 
 
-def check_given(name: str, value: cl_array.Array, context: cl.Context) -> None:
-    """Raise the error of `wrong` unless kernels of this context can read or write all elements of a user's Array."""
-    wanted = np.dtype(element_type(name))
-    if value.dtype != wanted:
-        raise wrong(name, f"dtype {wanted}", f"dtype {value.dtype}")
-    if value.context != context:
-        raise wrong(name, "an Array in the context of Denoiser(queue=...)", "one of another context")
-    if not isinstance(value.base_data, cl.MemoryObjectHolder):
-        raise wrong(name, "an Array in a buffer or memory pool", type(value.base_data).__name__)
-    if not is_aligned(value):
-        steps = f"offset {value.offset}, strides {value.strides}"
-        raise wrong(name, f"an offset and strides of whole elements, {wanted.itemsize} bytes each", steps)
-    first, end = span(value)
-    if first < 0 or end > value.base_data.size:
-        place = f"bytes {first} to {end} of one of {value.base_data.size}"
-        raise wrong(name, "elements inside their buffer", place)
-
-
 def wrap(queue: cl.CommandQueue, value: np.ndarray) -> cl.Buffer:
     """A buffer that is a numpy array's own memory, and keeps it alive.
 
@@ -216,31 +235,3 @@ def wrap(queue: cl.CommandQueue, value: np.ndarray) -> cl.Buffer:
     """
     with lack_of_room(queue.device, value.nbytes, value.nbytes):
         return cl.Buffer(queue.context, cl.mem_flags.USE_HOST_PTR, hostbuf=value)
-
-
-def check_apart(buffers: Mapping[str, cl.Buffer]) -> None:
-    """Raise `ArgumentError` where the result would overwrite a field that neighbouring pixels still read."""
-    if OUT not in buffers:
-        return
-    result, begin, end = place(buffers[OUT])
-    for name, buffer in buffers.items():
-        memory, first, last = place(buffer)
-        if name != OUT and memory == result and first < end and begin < last:
-            raise wrong(OUT, "memory of its own", f"that of {name}")
-
-
-def place(buffer: cl.Buffer) -> tuple[int, int, int]:
-    """Where a buffer lies: in which memory, as it may be part of another; its first byte and that behind its last."""
-    whole = cast("cl.Buffer | None", buffer.get_info(cl.mem_info.ASSOCIATED_MEMOBJECT)) or buffer
-    return whole.int_ptr, buffer.offset, buffer.offset + buffer.size
-
-
-def check_out(out: Any, shape: tuple[int, int, int]) -> None:
-    """Raise `ArgumentError` unless a result of this shape can be written to `out`."""
-    check_array(OUT, out)
-    if tuple(out.shape) != shape or out.dtype != np.float32:
-        raise wrong(OUT, f"shape {shape}, float32", f"shape {tuple(out.shape)}, {out.dtype}")
-    if isinstance(out, np.ndarray) and not (out.flags.c_contiguous and out.flags.writeable):
-        raise wrong(OUT, "a writable C-contiguous array", "a view or read-only array")
-    if isinstance(out, cl_array.Array) and not is_apart(out):
-        raise wrong(OUT, "memory of its own for every element", f"strides {out.strides}")

@@ -6,6 +6,7 @@ import contextlib
 import json
 import os
 import re
+import shutil
 import socket
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
@@ -31,7 +32,7 @@ def written_whole(path: Path) -> Iterator[Path]:
     FileError
         Where the file cannot be written; it names `path` and the system's reason.
     """
-    aside = path.with_name(f".{path.name}.{socket.gethostname()}-{os.getpid()}.tmp")
+    aside = _aside(path)
     made: list[Path] = []
     try:
         made = _in_made(path.parent, aside.touch)
@@ -45,6 +46,42 @@ def written_whole(path: Path) -> Iterator[Path]:
         if isinstance(error, OSError):
             raise FileError(f"{path}: cannot be written ({error.strerror or error})") from error
         raise
+
+
+@contextmanager
+def folder_written_whole(path: Path) -> Iterator[Path]:
+    """Yield an empty folder beside `path` to fill; it becomes `path` when the block ends, and is gone if it raises.
+
+    All else is as with `written_whole`.
+
+    Raises
+    ------
+    FileError
+        Where something is at `path` already, or the folder cannot be written.
+    """
+    aside = _aside(path)
+    made: list[Path] = []
+    try:
+        made = _in_made(path.parent, aside.mkdir)
+        yield aside
+        for file in aside.rglob("*"):
+            if file.is_file():
+                _sync(file)
+        check_new(path)  # a rename would replace an empty folder
+        aside.rename(path)
+    except BaseException as error:
+        shutil.rmtree(aside, ignore_errors=True)
+        _remove(made)
+        if isinstance(error, OSError):
+            raise FileError(f"{path}: cannot be written ({error.strerror or error})") from error
+        raise
+
+
+def check_new(path: Path) -> Path:
+    """Return `path` for a folder that is still to be made; `FileError` where something is there already."""
+    if os.path.lexists(path):
+        raise FileError(f"{path}: expected a new folder, but it is there already; delete it, or name another")
+    return path
 
 
 def write_text(path: Path, text: str) -> None:
@@ -133,6 +170,11 @@ def read_json(path: Path) -> Any:
         raise ValueError("nested too deeply") from error
 
 
+def _aside(path: Path) -> Path:
+    """Where this process writes what will be at `path`."""
+    return path.with_name(f".{path.name}.{socket.gethostname()}-{os.getpid()}.tmp")
+
+
 def _in_made(folder: Path, act: Callable[[], object]) -> list[Path]:
     """Make a folder as `_make` does and act in it; return what was made, which is gone if it raises.
 
@@ -188,7 +230,10 @@ def _delete_leftovers(folder: Path) -> None:
     for path in folder.iterdir():
         match = left.fullmatch(path.name)
         if match and not _is_running(int(match[1])):
-            path.unlink(missing_ok=True)
+            if path.is_dir() and not path.is_symlink():
+                shutil.rmtree(path, ignore_errors=True)
+            else:
+                path.unlink(missing_ok=True)
 
 
 def _is_running(process: int) -> bool:

@@ -66,8 +66,8 @@ def tell() -> None:
     if _problems and not _told:
         _told.append(_problems[0])
         warnings.warn(
-            f"{_told[0]}; all works without it, but each run asks devices, builds kernels and compiles the tracer "
-            "anew, and no reference is kept; set XDG_CACHE_HOME to a folder that can be written",
+            f"{_told[0]}; everything works without it, but each run tests devices, builds kernels and compiles "
+            "the tracer again, and references are not stored; set XDG_CACHE_HOME to a folder that can be written",
             stacklevel=2,
         )
 

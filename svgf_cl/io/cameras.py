@@ -63,11 +63,11 @@ def read_cameras(path: Path, shape: tuple[int, int] | None = None) -> dict[int, 
     for entry in content["cameras"]:
         frame = entry.get("frame") if isinstance(entry, dict) else None
         if type(frame) is not int or frame in cameras:
-            raise FileError(f"{path}: expected cameras that each have a frame of their own, found {shown(entry)}")
+            raise FileError(f"{path}: expected cameras of different frames, found {shown(entry)}")
         size = tuple({**common, **entry}.get(name) for name in ("height", "width"))
         if shape and size not in (shape, (None, None)):
             raise FileError(
-                f"{path}: camera of frame {frame}: expected width {shape[1]} and height {shape[0]}, those of the"
+                f"{path}: camera of frame {frame}: expected the width {shape[1]} and height {shape[0]} of the"
                 f" frames, got {shown(size[1])} and {shown(size[0])}"
             )
         try:

@@ -59,11 +59,11 @@ def write_image(path: Path, image: Image) -> None:
             OpenEXR.File(parts).write(_name(pixels))
             copy_with_header(pixels, aside, [part.attributes for part in image.parts])
         except (RuntimeError, ValueError) as error:
-            raise FileError(f"{path}: cannot be written ({one_line(error)}); is there room on the disk?") from error
+            raise FileError(f"{path}: cannot be written ({one_line(error)}); the disk may be full") from error
         finally:
             pixels.unlink(missing_ok=True)
         if not _has_header(aside):
-            raise FileError(f"{path}: cannot be written (one of the attributes that it would keep is damaged)")
+            raise FileError(f"{path}: cannot be written (one of the attributes to keep is damaged)")
 
 
 def _pixels(data: Window, index: int, part: Part) -> Any:
@@ -180,7 +180,7 @@ def _planes(path: Path, layouts: Sequence[Layout]) -> list[dict[str, Plane]]:
     except MemoryError as error:
         raise FileError(f"{path}: expected an image that fits into memory, got a larger one") from error
     except Exception as error:  # of whatever type the library's are
-        raise FileError(f"{path}: expected a whole image, got a damaged one ({one_line(error)})") from error
+        raise FileError(f"{path}: expected a complete image, got a damaged one ({one_line(error)})") from error
     found = [{name: part.channels[name].pixels for name in in_usual_order(part.channels)} for part in parts]
     claimed = [
         {
@@ -191,7 +191,7 @@ def _planes(path: Path, layouts: Sequence[Layout]) -> list[dict[str, Plane]]:
     ]
     # The library leaves out a part whose pixels it cannot read.
     if [{name: (plane.shape, plane.dtype) for name, plane in planes.items()} for planes in found] != claimed:
-        raise FileError(f"{path}: expected a whole image, got a damaged one (not all of its pixels can be read)")
+        raise FileError(f"{path}: expected a complete image, got a damaged one (some of its pixels cannot be read)")
     return found
 
 
@@ -210,7 +210,7 @@ def _checked(path: Path) -> tuple[list[Attributes], list[Layout]]:
     """Read the header of a file that can be read, part by part; all that is wrong with it is a FileError."""
     require(path)
     if not path.is_file():  # but a folder; or a pipe, which might keep us waiting for ever
-        raise FileError(f"{path}: expected an OpenEXR file, found something that is no file")
+        raise FileError(f"{path}: expected an OpenEXR file, found something that is not a file")
     try:
         _name(path)
         headers = read_header(path)
@@ -222,7 +222,7 @@ def _checked(path: Path) -> tuple[list[Attributes], list[Layout]]:
     except OSError as error:
         raise unreadable(path, error) from error
     except UnicodeError as error:
-        raise FileError(f"{path}: expected text in UTF-8 in its header, got another ({error})") from error
+        raise FileError(f"{path}: expected text in UTF-8 in its header, got another encoding ({error})") from error
     except ValueError as error:
         raise FileError(f"{path}: {error}") from error
     return headers, layouts
@@ -232,7 +232,7 @@ def _check_claims(layouts: Sequence[Layout], held: int) -> None:
     """Raise `ValueError` where a file of `held` bytes claims more than it can hold, or a picture that no memory can."""
     claimed = sum(layout.size for layout in layouts)
     if claimed > max(TRUSTED, MAX_RATIO * held):
-        raise ValueError(f"expected a whole image, got {claimed} bytes of pixels in a file of {held}")
+        raise ValueError(f"expected a complete image, got {claimed} bytes of pixels in a file of {held}")
     windows = layouts[0].windows
     if windows.display.area > max(MAX_DISPLAY, windows.data.area):
         raise ValueError(f"expected a display window of at most {MAX_DISPLAY} pixels, got {windows.display}")

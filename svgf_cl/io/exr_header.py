@@ -138,7 +138,7 @@ def _header(content: mmap.mmap, parts: Sequence[Attributes]) -> bytes:
 def _parsed(content: mmap.mmap | bytes) -> tuple[list[Attributes], int]:
     """The attributes of each part, and where the header ends."""
     if len(content) < START:
-        raise ValueError("expected a whole header, got one that is too short")
+        raise ValueError("expected a complete header, got one that is too short")
     multipart = struct.unpack_from("<I", content, 4)[0] & MULTIPART
     part, position = _parsed_part(content, START)
     parts = [part]
@@ -155,13 +155,13 @@ def _parsed_part(content: mmap.mmap | bytes, position: int) -> tuple[Attributes,
         name, position = text_at(content, position)
         kind, position = text_at(content, position)
         if not kind:
-            raise ValueError("expected a whole header, got an attribute of no type")
+            raise ValueError("expected a complete header, got an attribute of no type")
         if len(content) < position + 4:
-            raise ValueError("expected a whole header, got one that is cut off")
+            raise ValueError("expected a complete header, got one that is cut off")
         (size,) = struct.unpack_from("<i", content, position)
         position += 4
         if not 0 <= size <= len(content) - position:
-            raise ValueError(f"expected a whole header, got an attribute of {size} bytes")
+            raise ValueError(f"expected a complete header, got an attribute of {size} bytes")
         part[name] = kind, content[position : position + size]
         position += size
     return part, position + 1
@@ -171,7 +171,7 @@ def text_at(content: mmap.mmap | bytes, position: int) -> tuple[str, int]:
     """The text that begins at `position`, and where it ends."""
     end = content.find(b"\0", position)
     if end < 0:
-        raise ValueError("expected a whole header, got one that is cut off")
+        raise ValueError("expected a complete header, got one that is cut off")
     return content[position:end].decode(), end + 1
 
 

@@ -80,7 +80,9 @@ def _numbers(part: Attributes, name: str, kind: str, form: str) -> tuple[Any, ..
     """The numbers of an attribute that must be there and of that type."""
     found, value = part.get(name, ("none", b""))
     if found != kind or len(value) != struct.calcsize(form):
-        raise ValueError(f"expected a whole header with {name} of type {kind}, got {len(value)} bytes of type {found}")
+        raise ValueError(
+            f"expected a complete header with {name} of type {kind}, got {len(value)} bytes of type {found}"
+        )
     return struct.unpack(form, value)
 
 
@@ -109,4 +111,4 @@ def _channels(part: Attributes) -> Iterator[tuple[str, Channel]]:
         yield name, Channel(TYPES[number], (across, down) == (1, 1))
         position += 16
     if kind != "chlist" or listed[position:] != b"\0" or position == 0:
-        raise ValueError("expected a whole header with a list of channels, got none or a damaged one")
+        raise ValueError("expected a complete header with a list of channels, got none or a damaged one")

@@ -59,7 +59,7 @@ class ReadAs:
     def __post_init__(self) -> None:
         for name in self.passes:
             if name not in SIZES:
-                raise SvgfError(f"--map: expected one of {', '.join(SIZES)} to be mapped, got {name!r}")
+                raise SvgfError(f"--map: expected one of {', '.join(SIZES)}, got {name!r}")
 
 
 @dataclass(frozen=True)

@@ -59,7 +59,7 @@ class SeparateFiles:
             missing = [number for number in numbers if number not in files]
             if missing:
                 example = next(iter(files.values()))
-                raise FileError(f"{example}: expected a file of {field} for frame {missing[0]} beside it, found none")
+                raise FileError(f"{example}: expected a file of {field} for frame {missing[0]}, found none")
 
     def channels(self, number: int) -> dict[str, tuple[str, ...]]:
         """The channels of each field, as `planes` calls them, told from the files of one frame."""

@@ -136,7 +136,7 @@ def shot_in(folder: Path, stem: str = "frame") -> list[Path]:
     strangers = look_alikes(ours, visible)
     if strangers:
         warnings.warn(
-            f"{folder}: not read, though named much like {ours[0].path.name}: {listed(strangers)}", stacklevel=4
+            f"{folder}: not read, but named almost like {ours[0].path.name}: {listed(strangers)}", stacklevel=4
         )
     return [name.path for name in ours]
 
@@ -165,7 +165,7 @@ def in_order(files: Sequence[Path]) -> list[Path]:
     for path in files:
         name = Name.of(path)
         if name is None:
-            raise FileError(f"{path}: expected a number in the name of each of several frames, found none; number them")
+            raise FileError(f"{path}: expected a number in the name of each frame, found none; number the files")
         names.append(name)
     check_one_shot(names)
     names.sort(key=lambda name: name.number)
@@ -175,7 +175,7 @@ def in_order(files: Sequence[Path]) -> list[Path]:
     odd = [name.path.name for name in names if not name.is_padded(usual)]
     if odd:
         warnings.warn(
-            f"{listed(odd)}: padded otherwise than other frames, as if of another run; taken as of the same shot",
+            f"{listed(odd)}: padded in another way than other frames, so perhaps of another run; read as the same shot",
             stacklevel=3,
         )
     return [name.path for name in names]
@@ -189,8 +189,8 @@ def check_one_shot(names: Sequence[Name]) -> None:
     if len(shots) > 1:
         found = [f"{min(paths)} ({len(paths)} of its kind)" for paths in shots.values()]
         raise FileError(
-            f"{listed(found)}: expected the frames of one shot, in one folder and named alike but for their last "
-            f"number, found {len(shots)} kinds; give the files of one, or rename those that belong to it"
+            f"{listed(found)}: expected the frames of one shot, in one folder, whose names differ only in the last "
+            f"number, found {len(shots)} kinds; give the files of one kind, or rename files that belong to it"
         )
 
 
@@ -200,7 +200,7 @@ def check_doubles(names: Sequence[Name]) -> None:
     for name in names:
         key = identity(name.path)
         if key in seen:
-            raise FileError(f"{name.path}: expected every file once, got it as {seen[key]} too; give it once")
+            raise FileError(f"{name.path}: expected every file once, got it also as {seen[key]}; give it once")
         seen[key] = name.path
     for before, after in pairwise(names):
         if before.number == after.number:
@@ -230,8 +230,8 @@ def check_gaps(files: Sequence[Path]) -> None:
     missing = before.path.with_name(f"{before.head}{'-' * (first < 0)}{abs(first):0{width}d}{before.tail}")
     spans = [spanned(before.number + 1, after.number - 1) for before, after in gaps]
     raise FileError(
-        f"{missing}: expected this frame between {before.path.name} and {after.path.name}, found none; missing in all: "
-        f"{listed(spans)}; render them, or begin anew behind each gap with --allow-gaps"
+        f"{missing}: expected this frame between {before.path.name} and {after.path.name}, found none; all missing "
+        f"frames: {listed(spans)}; render them, or use --allow-gaps to start again after each gap"
     )
 
 
@@ -249,7 +249,7 @@ def check_leftovers(folder: Path, written: Collection[Path]) -> None:
     for path in sorted(entries(folder) if folder.is_dir() else []):
         name = Name.of(path)
         if name and (name.head, name.tail.lower()) in known and path not in new:
-            raise FileError(f"{path}: left by an earlier run of other length; delete it, or choose another folder")
+            raise FileError(f"{path}: left by an earlier run of another length; delete it, or choose another folder")
 
 
 def listed(names: Sequence[str]) -> str:

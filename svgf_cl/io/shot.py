@@ -274,8 +274,8 @@ def shared_window(paths: Sequence[Path]) -> Window:
     if window.area > max(MAX_DISPLAY, *(own.data.area for own in windows.values())):
         far = max(windows, key=lambda path: union((first.data, windows[path].data)).area)
         raise FileError(
-            f"{far}: expected a data window near {first.data}, that of {paths[0]}, got {windows[far].data}: too many"
-            " pixels between them"
+            f"{far}: expected a data window near {first.data}, that of {paths[0]}, got {windows[far].data}; a window"
+            " around both has too many pixels"
         )
     return window
 

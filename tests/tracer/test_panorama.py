@@ -66,7 +66,7 @@ def test_other_files_are_refused(tmp_path: Path) -> None:
         load_environment(tmp_path / "a.png")
     os.mkfifo(tmp_path / "pipe.hdr")
     for name in (".", "pipe.hdr"):
-        with pytest.raises(SceneError, match=r"found something that is no file"):
+        with pytest.raises(SceneError, match=r"found something that is not a file"):
             load_environment(tmp_path / name)
     (tmp_path / "a.exr").write_bytes(b"nothing of the kind")
     with pytest.raises(SceneError, match=r"a\.exr: expected a Radiance HDR file"):

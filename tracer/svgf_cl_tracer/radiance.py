@@ -24,15 +24,15 @@ def read_radiance(path: Path) -> Image:
     """
     require(path)
     if not path.is_file():
-        raise FileError(f"{path}: expected a Radiance HDR file or an OpenEXR file, found something that is no file")
+        raise FileError(f"{path}: expected a Radiance HDR file or an OpenEXR file, found something that is not a file")
     source = oiio.ImageInput.open(str(path))
     if source is None or source.format_name() != "hdr":
         got = f"the format {source.format_name()}" if source else one_line(oiio.geterror())
         raise FileError(f"{path}: expected a Radiance HDR file or an OpenEXR file, got {got}")
     claimed, held = source.spec().image_bytes(), path.stat().st_size
     if claimed > max(TRUSTED, MAX_RATIO * held):
-        raise FileError(f"{path}: expected a whole image, got {claimed} bytes of pixels in a file of {held}")
+        raise FileError(f"{path}: expected a complete image, got {claimed} bytes of pixels in a file of {held}")
     pixels = source.read_image("float")
     if pixels is None:
-        raise FileError(f"{path}: expected a whole image, got a damaged one ({one_line(source.geterror())})")
+        raise FileError(f"{path}: expected a complete image, got a damaged one ({one_line(source.geterror())})")
     return new_image(dict(zip(RGB, np.moveaxis(pixels, -1, 0), strict=True)), {})

@@ -117,7 +117,7 @@ class Exactly:
         there = tuple(name for name in self.names if name in found.channels)
         missing = [name for name in self.names if name not in (*there, *self.optional)]
         if there and missing:
-            raise ValueError(f"expected channels {' '.join(self.names)}, found {' '.join(there)} alone")
+            raise ValueError(f"expected channels {' '.join(self.names)}, found only {' '.join(there)}")
         return there
 
     def read(self, planes: Sequence[Array]) -> Array:

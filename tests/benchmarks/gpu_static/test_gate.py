@@ -8,6 +8,7 @@ from benchmarks.builds import Build
 from benchmarks.gpu_static import gate, spirv, usage
 from benchmarks.gpu_static.tools import Tools
 from benchmarks.gpu_static.variants import variants
+from svgf_cl.device import programs
 from tests.benchmarks.gpu_static.made_up import row
 
 # More values alive at a time than any GPU has registers for a work-item.
@@ -31,8 +32,10 @@ __kernel void indexed(__global float *values, const int n) {
     values[0] = kept[n & 63];
 }
 """
+ADDING = "__kernel void adding(__global float *v) { const int i = get_global_id(0); v[i] = v[i] + 1.0f; }"
+EXPONENTIAL = ADDING.replace("v[i] + 1.0f", "exp2(v[i])")
 WRONG = "__kernel void wrong(__global float *values) { values[0] = missing(values[1]); }"
-BUILD = Build("made_up", ("-cl-std=CL1.2", "-w"), "a test")
+BUILD = Build("made_up", programs.OPTIONS, "a test")
 
 
 def outcomes(tools: Tools, text: str, monkeypatch: pytest.MonkeyPatch) -> list[gate.Outcome]:
@@ -79,6 +82,16 @@ def test_scratch_memory_is_refused_on_every_architecture(compilers: Tools, monke
     rows = gate.rows(compilers, outcomes(compilers, INDEXED, monkeypatch))
     assert [each.architecture for each in rows] == list(gate.ARCHITECTURES)
     assert all(any("expected no scratch memory" in fault for fault in each.faults()) for each in rows)
+
+
+def test_an_exponential_is_an_instruction_on_every_architecture(
+    compilers: Tools, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    adding, exponential = (
+        gate.rows(compilers, outcomes(compilers, text, monkeypatch)) for text in (ADDING, EXPONENTIAL)
+    )
+    for one, other in zip(adding, exponential, strict=True):
+        assert other.instructions.total <= one.instructions.total  # 20 more where a library writes it out
 
 
 def test_what_does_not_compile_is_told_for_every_target(compilers: Tools, monkeypatch: pytest.MonkeyPatch) -> None:

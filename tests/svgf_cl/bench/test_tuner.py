@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 from functools import partial
 from types import SimpleNamespace
 from typing import Any
@@ -19,6 +20,7 @@ from svgf_cl.device.tuning import EXPONENTIALS, GPU_TUNING
 
 SHAPE = (9, 20)
 DEFAULT = Tuning(vector_width=16, work_group=(64, 1))
+ODD = Tuning(vector_width=4, work_group=(8, 2))
 
 
 class FakeDenoiser:
@@ -113,6 +115,33 @@ def test_on_a_gpu_its_own_choices_are_tried(fake: type[FakeDenoiser], monkeypatc
     assert {tuning.vector_width for tuning in tried} == {1, 4}
     assert {tuning.work_group for tuning in tried} == set(GPU_CHOICES["work_group"])
     assert {tuning.exponential for tuning in tried} == set(EXPONENTIALS)
+
+
+def test_copies_are_not_raced_where_memory_is_shared(
+    fake: type[FakeDenoiser], queue: cl.CommandQueue, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tuner, "shares_memory", lambda device: True)
+    assert Tuner(SHAPE, queue).race_copies(DEFAULT) is None
+
+
+@pytest.mark.parametrize(("share", "faster"), [(0.8, True), (1.0, False)])
+def test_of_copies_the_whole_call_counts(
+    share: float, faster: bool, fake: type[FakeDenoiser], queue: cl.CommandQueue, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = [0.0]
+
+    def denoise(self: FakeDenoiser, frame: Frame, *, out: np.ndarray) -> None:
+        out[:] = 1
+        now[0] += (share if self.tuning.pinned_copies else 1.0) * 0.005
+
+    monkeypatch.setattr(tuner, "shares_memory", lambda device: False)
+    monkeypatch.setattr(fake, "denoise", denoise)
+    monkeypatch.setattr(tuner.time, "perf_counter", lambda: now[0])
+    trial = Tuner(SHAPE, queue).race_copies(ODD)
+    assert trial.tuning == replace(ODD, pinned_copies=True)
+    assert trial.time == pytest.approx(5 * share)
+    assert trial.ratio == pytest.approx(share)
+    assert trial.is_faster == faster
 
 
 def test_what_is_hopeless_is_not_timed(fake: type[FakeDenoiser], queue: cl.CommandQueue) -> None:

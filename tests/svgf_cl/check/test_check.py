@@ -60,7 +60,7 @@ def test_a_finding_says_all_there_is_to_say(room: list[Frame]) -> None:
 def test_what_relies_on_a_wrong_field_is_put_off(room: list[Frame]) -> None:
     wrong = [replace(frame, motion=frame.motion * np.float32([-1, -1, 1])) for frame in room]
     untold = {unknown.topic: unknown.why for unknown in check_sequence(wrong).unknown}
-    assert untold[surfaces.NAMES.topic] == "mend motion first"
+    assert untold[surfaces.NAMES.topic] == "correct motion first"
 
 
 def test_frames_on_both_sides_of_a_cut_are_not_compared(room: list[Frame]) -> None:
@@ -70,7 +70,7 @@ def test_frames_on_both_sides_of_a_cut_are_not_compared(room: list[Frame]) -> No
         inspection.add(frame)
     report = inspection.report()
     assert not report.findings
-    assert {unknown.why for unknown in report.unknown} >= {"it takes 2 frames in a row"}
+    assert {unknown.why for unknown in report.unknown} >= {"it needs 2 consecutive frames"}
 
 
 def test_a_warning_puts_nothing_off() -> None:
@@ -79,7 +79,7 @@ def test_a_warning_puts_nothing_off() -> None:
 
     check = Check("topic", lambda view: np.ones(1), judge, trusts=("albedo",))
     assert check.verdict(np.ones(1), set(), 1) == judge(np.ones(1))
-    assert check.verdict(np.ones(1), {"albedo"}, 1) == [Unknown("topic", "mend albedo first")]
+    assert check.verdict(np.ones(1), {"albedo"}, 1) == [Unknown("topic", "correct albedo first")]
 
 
 @pytest.mark.parametrize("field", ["normal", "depth", "motion"])

@@ -33,8 +33,8 @@ MISTAKES = [
     ("color", at(np.inf, np.s_[:1, :1]), "NaN or infinity", "warning"),
     ("color", at(-1.0), "negative", "error"),
     ("depth", np.negative, "negative", "error"),
-    ("depth", at(0.0), "0 where nothing was hit", "error"),
-    ("depth", at(1e10), "a finite number where nothing was hit", "error"),
+    ("depth", at(0.0), "0 where there is a normal", "error"),
+    ("depth", at(1e10), "a finite number where the ray hit nothing", "error"),
     ("depth", lambda given: 0 * given + 1, "one value everywhere", "error"),
     ("color", lambda given: 0 * given, "one value everywhere", "error"),
     ("albedo", lambda given: 0 * given + 1, "one value everywhere", "warning"),
@@ -51,7 +51,7 @@ MISTAKES = [
 CARRIED = [
     ("diffuse", -1.0, "negative"),
     ("specular", np.inf, "NaN or infinity"),
-    ("diffuse", 9.0, "with specular and emission not all of color"),
+    ("diffuse", 9.0, "the sum with specular and emission is not color"),
     ("roughness", 255.0, "above 1"),
     ("roughness", -0.5, "negative"),
     ("hit_distance", -1.0, "negative"),
@@ -97,7 +97,7 @@ def test_a_wrong_value_of_what_is_carried_is_a_warning(split: Frame, field: str,
 
 def test_light_that_is_split_is_whole(split: Frame) -> None:
     (found,) = check_frame(replace(split, direct=0 * split.direct)).findings
-    assert (found.field, found.what) == ("direct", "with indirect and emission not all of color")
+    assert (found.field, found.what) == ("direct", "the sum with indirect and emission is not color")
     (found,) = check_frame(replace(split, color=None, diffuse=2 * split.diffuse)).findings
     assert (found.field, found.severity) == ("diffuse", "warning")
     rounded = split.diffuse.astype(np.float16).astype(np.float32)

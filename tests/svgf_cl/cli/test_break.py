@@ -73,7 +73,7 @@ def test_a_damaged_frame_leaves_those_before_it_done(rendered: Path, denoised: P
     damaged.write_bytes(whole[: len(whole) // 2])
     assert run("denoise", frames, "--png", "-o", out) == 2
     said = capsys.readouterr().err
-    assert said.startswith(f"svgf-cl: {damaged}: expected a whole image, got a damaged one")
+    assert said.startswith(f"svgf-cl: {damaged}: expected a complete image, got a damaged one")
     assert said.count("\n") == 1
     done = {name: content for name, content in contents(denoised).items() if "0000" in name or "0001" in name}
     assert contents(out) == done

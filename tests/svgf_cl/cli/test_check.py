@@ -78,4 +78,4 @@ def test_a_gap_is_a_cut(tmp_path: Path, room: list[Frame], capsys: pytest.Captur
     assert run(folder) == 2
     assert "--allow-gaps" in capsys.readouterr().err
     assert run(folder, "--allow-gaps") == 0
-    assert "motion: direction, axes, unit: not checked: it takes 2 frames in a row" in capsys.readouterr().out
+    assert "motion: direction, axes, unit: not checked: it needs 2 consecutive frames" in capsys.readouterr().out

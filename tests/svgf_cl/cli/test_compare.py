@@ -217,8 +217,8 @@ def test_wrong_options_beside_pictures(words: str, options: list[str], rendered:
 @pytest.mark.parametrize(
     ("words", "options"),
     [
-        ("--filters: expected names out of kalman", ["--filters", "nlm"]),
-        ("--filters: expected names out of kalman", ["--filters", ""]),
+        ("--filters: expected names among kalman", ["--filters", "nlm"]),
+        ("--filters: expected names among kalman", ["--filters", ""]),
         ("got ''", ["--filters", "svgf,"]),
         ("--filters: expected each filter once", ["--filters", "svgf,svgf"]),
         ("no settings of oidn, got quality=fast", ["--filters", "oidn,quality=fast"]),
@@ -241,11 +241,11 @@ def test_scenes_and_pictures_do_not_mix(rendered: Path, refused) -> None:
 
 def test_frames_alone_have_nothing_to_be_held_against(rendered: Path, refused) -> None:
     refused("expected two pictures or folders, the second being the reference", "compare", rendered)
-    refused("got 3; frames to be filtered want --reference", "compare", rendered, rendered, rendered)
+    refused("got 3; to filter frames, add --reference", "compare", rendered, rendered, rendered)
 
 
 def test_references_alone_are_nothing_to_filter(rendered: Path, refused) -> None:
-    refused("--reference: expected frames beside it, got none", "compare", "--reference", rendered)
+    refused("--reference: expected frames too, got none", "compare", "--reference", rendered)
 
 
 def test_empty_input(tmp_path: Path, refused) -> None:

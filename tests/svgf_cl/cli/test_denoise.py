@@ -72,7 +72,7 @@ def test_a_warning_is_one_line(frames: Path, tmp_path: Path, capsys: pytest.Capt
     (frames / "frame.0003.exr.part").touch()
     assert run("denoise", frames, "-o", tmp_path) == 0
     said = capsys.readouterr().err
-    assert said.startswith(f"svgf-cl: warning: {frames}: not read, though named much like ")
+    assert said.startswith(f"svgf-cl: warning: {frames}: not read, but named almost like ")
     assert said.count("\n") == 1
 
 

@@ -93,7 +93,20 @@ def test_a_declared_command_is_run_like_any_other(declare, refused, capsys: pyte
 
 def test_commands_are_listed_in_one_order(declare) -> None:
     declare(zoom="a:b", juggle="a:b", render="a:b", demo="a:b", scenes="a:b", tune="a:b")
-    known = ["devices", "demo", "scenes", "render", "formats", "check", "denoise", "view", "compare", "bench", "tune"]
+    known = [
+        "devices",
+        "demo",
+        "scenes",
+        "render",
+        "formats",
+        "check",
+        "denoise",
+        "view",
+        "compare",
+        "export",
+        "bench",
+        "tune",
+    ]
     assert list(commands()) == [*known, "juggle", "zoom"]
     assert commands()["tune"] is tune, "no other package replaces a command of svgf_cl"
 

@@ -55,7 +55,7 @@ def test_a_scale_that_is_none_is_refused(scale: float) -> None:
 
 
 def test_a_field_that_is_none_is_refused_before_a_file_is_read() -> None:
-    with pytest.raises(SvgfError, match=r"--map: expected one of color, .*motion_to_next to be mapped, got 'z'"):
+    with pytest.raises(SvgfError, match=r"--map: expected one of color, .*motion_to_next, got 'z'"):
         options(maps=["z=Z"])
 
 

@@ -109,7 +109,7 @@ def test_a_mistake_is_a_warning_and_no_check_keeps_quiet(
 ) -> None:
     folder = written(tmp_path / "in", changed(room, "normal", lambda normal: 0.5 * normal + 0.5))
     _, err = said(capsys, folder, "-o", tmp_path / "out")
-    assert "svgf-cl: warning: normal: encoded in 0..1; give 2 n - 1, and 0 where nothing was hit\n" in err
+    assert "svgf-cl: warning: normal: encoded in 0..1; give 2 n - 1, and 0 where the ray hit nothing\n" in err
     assert "--no-check leaves it out" in err
     assert "Traceback" not in err
     assert said(capsys, folder, "-o", tmp_path / "out", "--no-check")[1] == ""
@@ -146,14 +146,14 @@ def test_negative_depth_is_refused(tmp_path: Path, room: list[Frame], beyond: fl
     assert "negative" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(("depth", "what"), [(0.0, "0 where nothing was hit"), (np.inf, "empty everywhere")])
+@pytest.mark.parametrize(("depth", "what"), [(0.0, "0 where there is a normal"), (np.inf, "empty everywhere")])
 def test_empty_depth_is_named(
     tmp_path: Path, room: list[Frame], depth: float, what: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = written(tmp_path / "in", changed(room, "depth", lambda given: given * 0 + depth))
     err = said(capsys, folder, "-o", tmp_path / "out")[1]
     assert f"depth: {what}" in err
-    assert "mend depth first" not in err
+    assert "correct depth first" not in err
 
 
 def test_a_shot_of_nothing_but_sky_is_said(

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from svgf_cl.bench import tuner
-from svgf_cl.device import tuning
+from svgf_cl.device import tuning, user_arrays
 from tests.command_line import run
 
 
@@ -64,6 +64,22 @@ def test_what_is_not_to_be_stored_is_only_told(store: Path, capsys: pytest.Captu
     assert run("tune", "--size", "32x18", "--seconds", "1e6", "--no-store") == 0
     assert "not stored, as asked" in capsys.readouterr().out
     assert not store.exists()
+
+
+def test_where_numpy_arrays_are_copied_the_copies_are_timed(
+    store: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(tuner, "shares_memory", lambda device: False)
+    monkeypatch.setattr(user_arrays, "shares_memory", lambda device: False)
+    monkeypatch.setattr(tuner, "CHOICES", {"vector_width": (4,)})
+    monkeypatch.setattr(tuner, "CERTAIN", 0.0)
+    for wins in (True, False):  # whatever this machine says
+        monkeypatch.setattr(tuner, "WORTHWHILE", float("inf") if wins else 0.0)
+        assert run("tune", "--size", "32x18", "--seconds", "1e6") == 0
+        said = capsys.readouterr().out
+        assert "; calls from numpy to numpy: vectors of" in said
+        assert json.loads(store.read_text()).popitem()[1]["tuning"]["pinned_copies"] is wins
+        assert (", pinned copies: stored in" in said) is wins
 
 
 @pytest.mark.parametrize(

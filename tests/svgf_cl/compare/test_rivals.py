@@ -50,14 +50,14 @@ def test_all_that_is_there_takes_part_by_default() -> None:
 @pytest.mark.parametrize(
     ("text", "complaint"),
     [
-        ("", "expected names out of kalman, .*, oidn.accumulation, got ''"),
+        ("", "expected names among kalman, .*, oidn.accumulation, got ''"),
         ("svgf,", "got ''"),
         (",svgf", "got ''"),
         ("nlm", "got 'nlm'"),
         ("taps=5x5,svgf", "got 'taps=5x5'"),
         ("svgf,svgf", "each filter once"),
         ("svgf,taps=5x5,eaw,svgf,taps=5x5", "each filter once"),
-        ("svgf,colour=red", "expected NAME=VALUE with a name out of"),
+        ("svgf,colour=red", "expected NAME=VALUE with a name among"),
         ("svgf,iterations=many", "iterations: expected"),
         ("eaw,oidn,quality=fast", "no settings of oidn, got quality=fast"),
     ],

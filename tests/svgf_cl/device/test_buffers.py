@@ -10,6 +10,7 @@ from numpy.testing import assert_array_equal
 from svgf_cl import DeviceError, Inputs, Settings
 from svgf_cl.device.buffers import Buffers
 from svgf_cl.device.layout import Layout
+from svgf_cl.device.memory import Memory
 from svgf_cl.device.memory_plan import memory_slots
 from svgf_cl.filters.pipeline import Buffer, Life
 from svgf_cl.filters.temporal import UNKNOWN
@@ -19,7 +20,7 @@ from tests.frames import FULL, SHAPE, bumpy_sequence
 INPUTS = Inputs.of(bumpy_sequence(FULL, count=1)[0])
 LAYOUT = Layout(*SHAPE)
 PIPELINE = Settings(taa=True).pipeline(INPUTS)
-SLOTS = memory_slots(PIPELINE)
+MEMORY = Memory(LAYOUT, memory_slots(PIPELINE))
 RESOURCES = {resource.name: resource for resource in PIPELINE.resources}
 LASTING = {resource.name: Buffer(resource, resource.life is Life.PAIR) for resource in PIPELINE.lasting}
 EVERY = [*map(Buffer, PIPELINE.resources), *(buffer for buffer in LASTING.values() if buffer.previous)]
@@ -27,7 +28,7 @@ EVERY = [*map(Buffer, PIPELINE.resources), *(buffer for buffer in LASTING.values
 
 @pytest.fixture
 def buffers(queue: cl.CommandQueue) -> Buffers:
-    return Buffers(queue, LAYOUT, SLOTS)
+    return Buffers(queue, MEMORY)
 
 
 def now(name: str) -> Buffer:
@@ -58,14 +59,13 @@ def test_what_is_forgotten_says_so_and_the_rest_stays(buffers: Buffers, queue: c
 
 
 def test_another_inherits_what_was_written_last(buffers: Buffers, queue: cl.CommandQueue) -> None:
-    heir = Buffers(queue, LAYOUT, SLOTS)
+    heir = Buffers(queue, MEMORY)
     for value, resource in enumerate(PIPELINE.lasting, start=1):
         write(queue, buffers[Buffer(resource)], value)
     heir.inherit(buffers, PIPELINE.lasting)
     heir.begin_frame()
     for value, buffer in enumerate(LASTING.values(), start=1):
-        nbytes = LAYOUT.nbytes(buffer.resource.planes.depth)
-        assert_array_equal(heir.read(buffer)[: nbytes // 4], value)
+        assert_array_equal(heir.read(buffer)[: MEMORY.nbytes(buffer.resource) // 4], value)
 
 
 def test_nbytes_is_all_memory(buffers: Buffers) -> None:
@@ -91,7 +91,7 @@ def test_last_owner_of_shared_memory_survives(buffers: Buffers) -> None:
 
 
 def test_a_copy_survives_the_next_owner(queue: cl.CommandQueue) -> None:
-    buffers = Buffers(queue, LAYOUT, SLOTS, copies=True)
+    buffers = Buffers(queue, MEMORY, copies=True)
     for value, name in enumerate(("demodulated", "accumulated")):
         write(queue, buffers[now(name)], value)
         buffers.copy_aside(now(name))
@@ -102,14 +102,14 @@ def test_a_copy_survives_the_next_owner(queue: cl.CommandQueue) -> None:
 
 def test_copies_count_as_memory(buffers: Buffers, queue: cl.CommandQueue) -> None:
     copies = sum(buffers[Buffer(resource)].size for resource in PIPELINE.resources)
-    assert Buffers(queue, LAYOUT, SLOTS, copies=True).nbytes == buffers.nbytes + copies
+    assert Buffers(queue, MEMORY, copies=True).nbytes == buffers.nbytes + copies
 
 
 def test_too_large_an_image_is_refused_with_what_it_needs_and_what_there_is(queue: cl.CommandQueue) -> None:
-    layout = Layout(1 << 18, 1 << 18)
-    needed = sum(layout.nbytes(slot.planes.depth) for slot in SLOTS) / 2**20
+    memory = Memory(Layout(1 << 18, 1 << 18), MEMORY.slots)
+    needed = sum(memory.sizes) / 2**20
     there = queue.device.global_mem_size / 2**20
     nothing_taken = failing("Buffer", 0, lambda *_: pytest.fail("expected no buffer to be made"))
     words = rf"no room for .* {needed:.1f} MiB needed in all; it has {there:.1f} MiB"
     with nothing_taken, pytest.raises(DeviceError, match=words):
-        Buffers(queue, layout, SLOTS)
+        Buffers(queue, memory)

@@ -29,7 +29,7 @@ def test_a_part_goes_there_and_comes_back(queue: cl.CommandQueue) -> None:
     there, back = (HostPlanes({GUIDE: GUIDE.quantities}, SHAPE) for _ in range(2))
     there.forget()
     there.upload(queue, GUIDE, Place(memory, LAYOUT, (2, 3)), (5, 7), (6, 10))
-    back.download(queue, GUIDE, Place(memory, LAYOUT, (2, 3)), (8, 20), (6, 10))
+    cl.wait_for_events(back.download(queue, GUIDE, Place(memory, LAYOUT, (2, 3)), (8, 20), (6, 10)))
     raw = np.empty(nbytes, np.uint8)
     cl.enqueue_copy(queue, raw, memory)
     full = LAYOUT.crop(raw[: LAYOUT.nbytes(64)].view(np.float32))

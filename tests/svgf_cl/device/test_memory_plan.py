@@ -9,6 +9,7 @@ from hypothesis import given
 
 from svgf_cl import Inputs, Kalman, Settings
 from svgf_cl.device.layout import Layout
+from svgf_cl.device.memory import Memory
 from svgf_cl.device.memory_plan import Slot, memory_slots
 from svgf_cl.filters.formats import Format
 from svgf_cl.filters.pipeline import Access, Buffer, Life, Pass, Pipeline, Quantity, Resource, access
@@ -124,8 +125,7 @@ def test_memory_at_1080p(chosen: dict, megabytes: float) -> None:
 
 
 def memory_at_1080p(pipeline: Pipeline) -> int:
-    layout = Layout(1080, 1920)
-    return sum(layout.every(slot.spacing).nbytes(slot.planes.depth) for slot in memory_slots(pipeline))
+    return sum(Memory(Layout(1080, 1920), memory_slots(pipeline)).sizes)
 
 
 def test_memory_of_kalman_at_1080p() -> None:

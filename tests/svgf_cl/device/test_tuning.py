@@ -20,7 +20,7 @@ from svgf_cl.plan import fitting
 from tests.denoising import vector_width
 from tests.frames import wall
 
-ODD = Tuning(vector_width=4, work_group=(8, 2), row_alignment=128, exponential="exp2")
+ODD = Tuning(vector_width=4, work_group=(8, 2), row_alignment=128, exponential="exp2", pinned_copies=True)
 
 
 @dataclass
@@ -55,6 +55,7 @@ def memory(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
         ("row_alignment", 1024),
         ("exponential", "exp"),
         ("exponential", 2),
+        ("pinned_copies", 1),
     ],
 )
 def test_values_out_of_range(field: str, value: object) -> None:
@@ -115,8 +116,8 @@ def test_devices_and_drivers_are_kept_apart(memory: Path) -> None:
 
 def test_what_a_stored_tuning_does_not_say_is_the_usual(memory: Path) -> None:
     store_tuning(FakeDevice(), ODD)
-    memory.write_text(memory.read_text().replace(',\n   "exponential": "exp2"', ""))
-    assert stored_tuning(FakeDevice()) == replace(ODD, exponential="polynomial")
+    memory.write_text(memory.read_text().replace(',\n   "exponential": "exp2",\n   "pinned_copies": true', ""))
+    assert stored_tuning(FakeDevice()) == replace(ODD, exponential="polynomial", pinned_copies=False)
 
 
 def test_a_tuning_is_for_the_kernels_it_was_found_with(memory: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,10 +16,15 @@ import pyopencl.tools as cl_tools
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from svgf_cl import ArgumentError, Denoiser, Frame, FrameError, Settings
+from svgf_cl import ArgumentError, Denoiser, DeviceError, Eaw, Frame, FrameError, Inputs, Settings
 from svgf_cl.device import user_arrays
+from svgf_cl.device.tiling import Tiling
+from svgf_cl.device.tuning import default_tuning
 from svgf_cl.frame import CARRIED, CHANNELS
+from svgf_cl.io.synthetic import room_frames
+from svgf_cl.tiled import TiledDenoiser
 from tests.arrays import STRIDED, big_endian, fetched, like, mapped_file, of_one_row, read_only, strided, unaligned
+from tests.faults import broken_launch, failing
 from tests.frames import FULL, PLAIN, SHAPE, SPLIT, bumpy_sequence, wall
 
 FRAME = bumpy_sequence(FULL, count=1)[0]
@@ -388,6 +393,111 @@ class TestInPlace:
         with pytest.raises(KeyboardInterrupt):
             in_place.denoise(FRAME, wait_for=[go])
         assert [event.command_execution_status for event in events] == [cl.command_execution_status.COMPLETE] * 3
+
+
+class TestUploads:
+    """Numpy arrays that are copied to the device: one wait a frame, at its end."""
+
+    @pytest.fixture(params=[False, True], ids=["direct", "pinned"])
+    def den(self, queue: cl.CommandQueue, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Denoiser:
+        monkeypatch.setattr(user_arrays, "shares_memory", lambda device: False)
+        tuning = replace(default_tuning(queue.device), pinned_copies=request.param)
+        return Denoiser(SHAPE, queue=queue, tuning=tuning)
+
+    @pytest.fixture
+    def held_up(self, queue: cl.CommandQueue) -> Iterator[None]:
+        """All that is put on the queue begins a little later."""
+        go = cl.UserEvent(queue.context)
+        cl.enqueue_barrier(queue, wait_for=[go])
+        threading.Timer(0.1, go.set_status, [cl.command_execution_status.COMPLETE]).start()
+        yield
+        queue.finish()
+
+    def test_pictures_are_the_same(self, den: Denoiser, queue: cl.CommandQueue) -> None:
+        other = Denoiser(SHAPE, queue=queue)
+        for frame in bumpy_sequence(FULL, count=3):
+            assert_array_equal(den.denoise(frame), other.denoise(frame))
+            den.denoise(frame, out=(out := cl_array.empty(queue, OUT, np.float32)))
+            assert_array_equal(out.get(), other.denoise(frame))
+
+    def test_tiles_are_uploaded_one_after_the_other(self, den: Denoiser, queue: cl.CommandQueue) -> None:
+        settings, frames = Eaw(iterations=1), list(room_frames((60, 150), 2))
+        inputs = Inputs.of(frames[0])
+        least = Tiling(settings.pipeline(inputs), (60, 150), den.tuning.row_alignment).least()
+        tiled = TiledDenoiser(
+            (60, 150), inputs, settings=settings, queue=queue, tuning=den.tuning, max_bytes=int(1.2 * least)
+        )
+        assert tiled.tiles > 1
+        other = Denoiser((60, 150), settings=settings, queue=queue)
+        for frame in frames:
+            assert_array_equal(tiled.denoise(frame), other.denoise(frame))
+
+    def test_sizes_may_change(self, den: Denoiser) -> None:
+        den.denoise(FRAME)
+        den.resize((20, 30))
+        frame = wall((20, 30))
+        assert_array_equal(den.denoise(frame), Denoiser((20, 30)).denoise(frame))
+
+    def test_the_host_does_not_wait_for_each(self, den: Denoiser, monkeypatch: pytest.MonkeyPatch) -> None:
+        uploads: list[bool] = []
+
+        def copy(queue: cl.CommandQueue, target: Any, source: Any, *, is_blocking: bool = True) -> cl.Event:
+            if isinstance(target, cl.Buffer):
+                uploads.append(is_blocking)
+            return usual(queue, target, source, is_blocking=is_blocking)
+
+        den.denoise(FRAME)
+        usual = cl.enqueue_copy
+        monkeypatch.setattr(cl, "enqueue_copy", copy)
+        den.denoise(FRAME)
+        assert uploads == [False] * len(FRAME.present())
+
+    def test_fields_may_be_overwritten_afterwards(self, den: Denoiser, expected: np.ndarray, held_up: None) -> None:
+        frame = mapped(FRAME, np.copy)
+        out = cl_array.empty(den.queue, OUT, np.float32)
+        den.denoise(frame, out=out)
+        for value in frame.present().values():
+            value.fill(0)
+        assert_array_equal(out.get(), expected)
+
+    def test_after_an_error_nothing_reads_the_fields(
+        self, den: Denoiser, held_up: None, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        events = noted(monkeypatch)
+        with broken_launch(3), pytest.raises(DeviceError):
+            den.denoise(FRAME, out=cl_array.empty(den.queue, OUT, np.float32))
+        if not den.tuning.pinned_copies:  # else these are not the arrays that are read
+            assert_complete(events, len(FRAME.present()))
+
+    def test_where_one_upload_fails_nothing_reads_the_others(
+        self, den: Denoiser, held_up: None, monkeypatch: pytest.MonkeyPatch, expected: np.ndarray
+    ) -> None:
+        def fail(*_: object, **__: object) -> None:
+            raise cl.LogicError("clEnqueueWriteBuffer failed: OUT_OF_RESOURCES")
+
+        events = noted(monkeypatch)
+        with failing("enqueue_copy", 2, fail), pytest.raises(DeviceError, match="the frame was not begun"):
+            den.denoise(FRAME)
+        if not den.tuning.pinned_copies:
+            assert_complete(events, 2)
+        assert_array_equal(den.denoise(FRAME), expected)
+
+
+def noted(monkeypatch: pytest.MonkeyPatch) -> list[cl.Event]:
+    """The events of copies from now on."""
+    usual, events = cl.enqueue_copy, []
+
+    def copy(*arguments: Any, **options: Any) -> cl.Event:
+        events.append(usual(*arguments, **options))
+        return events[-1]
+
+    monkeypatch.setattr(cl, "enqueue_copy", copy)
+    return events
+
+
+def assert_complete(events: list[cl.Event], count: int) -> None:
+    done = cl.command_execution_status.COMPLETE
+    assert [event.command_execution_status for event in events] == [done] * count
 
 
 class TestOutput:

@@ -15,7 +15,7 @@ import pytest
 
 from svgf_cl import FileError
 from svgf_cl.io import atomic
-from svgf_cl.io.atomic import output_file, output_folder, read_json, written_whole
+from svgf_cl.io.atomic import folder_written_whole, output_file, output_folder, read_json, written_whole
 from svgf_cl.io.display import write_image
 from svgf_cl.io.panels import write_preview
 from tests.disk import files_up_to
@@ -197,3 +197,41 @@ def test_a_folder_that_another_process_removes_in_between_is_made_again(
     with pytest.raises(FileError, match="cannot be written"):
         atomic.write_text(tmp_path / "c" / "d" / "file", "text")
     assert not (tmp_path / "c").exists()
+
+
+def test_a_folder_appears_when_it_is_whole(tmp_path: Path) -> None:
+    path = tmp_path / "made" / "a"
+    with folder_written_whole(path) as aside:
+        (aside / "b").mkdir()
+        (aside / "b" / "c.txt").write_text("new")
+        assert not path.exists()
+    assert (path / "b" / "c.txt").read_text() == "new"
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_a_folder_that_breaks_off_leaves_nothing(tmp_path: Path) -> None:
+    def break_off() -> None:
+        with folder_written_whole(tmp_path / "made" / "a") as aside:
+            (aside / "b.txt").write_text("ne")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        break_off()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_is_not_put_in_the_place_of_another(tmp_path: Path) -> None:
+    path = tmp_path / "a"
+    with pytest.raises(FileError, match="a: expected a new folder, but it is there already"):  # noqa: SIM117
+        with folder_written_whole(path):
+            path.mkdir()
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_folder_that_a_killed_process_left_is_cleared_away(tmp_path: Path) -> None:
+    ended = subprocess.run([sys.executable, "-c", "import os; print(os.getpid())"], capture_output=True, check=True)
+    gone = tmp_path / f".a.{socket.gethostname()}-{int(ended.stdout)}.tmp"
+    gone.mkdir()
+    (gone / "b.txt").touch()
+    output_folder(tmp_path)
+    assert list(tmp_path.iterdir()) == []

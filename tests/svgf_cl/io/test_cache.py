@@ -59,7 +59,9 @@ def test_what_root_cannot_write_either(place: str, tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     (tmp_path / "link").symlink_to(tmp_path / "nowhere")
     assert not is_usable(tmp_path / place)
-    with pytest.warns(UserWarning, match=rf"{place}: cannot be written \(.+\); all works without it, .* set XDG_CACHE"):
+    with pytest.warns(
+        UserWarning, match=rf"{place}: cannot be written \(.+\); everything works without it, .* set XDG_CACHE"
+    ):
         tell()
 
 

@@ -82,8 +82,8 @@ def test_a_name_that_is_no_text_is_refused(tmp_path: Path) -> None:
     ("make", "words"),
     [
         (lambda path: None, "found nothing there"),
-        (lambda path: path.mkdir(), "found something that is no file"),
-        (os.mkfifo, "found something that is no file"),
+        (lambda path: path.mkdir(), "found something that is not a file"),
+        (os.mkfifo, "found something that is not a file"),
         (lambda path: path.symlink_to(path), "cannot be read \\(Too many levels of symbolic links\\)"),
         (lambda path: path.touch(), "expected an OpenEXR file, got"),
         (lambda path: path.write_text("hello"), "expected an OpenEXR file, got"),
@@ -219,7 +219,7 @@ def test_more_pixels_than_a_file_can_hold_are_refused(path: Path, monkeypatch: p
     monkeypatch.setattr(exr, "MAX_RATIO", 0.5)
     assert_whole(path)
     monkeypatch.setattr(exr, "TRUSTED", 11 * 7 * 16 - 1)
-    with pytest.raises(FileError, match=r"a\.exr: expected a whole image, got 1232 bytes of pixels in a file of"):
+    with pytest.raises(FileError, match=r"a\.exr: expected a complete image, got 1232 bytes of pixels in a file of"):
         read_channels(path)
 
 

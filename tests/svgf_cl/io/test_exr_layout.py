@@ -41,9 +41,9 @@ def test_a_layout_is_what_the_header_says() -> None:
 def test_what_every_part_needs_is_asked_for(name: str) -> None:
     kind, value = PART[name]
     for damaged in (("string", value), (kind, value[:-1]), (kind, b""), (kind, value + b"\1")):
-        with pytest.raises(ValueError, match="expected a whole header with"):
+        with pytest.raises(ValueError, match="expected a complete header with"):
             layout_of({**PART, name: damaged})
-    with pytest.raises(ValueError, match="expected a whole header with"):
+    with pytest.raises(ValueError, match="expected a complete header with"):
         layout_of({each: PART[each] for each in PART if each != name})
 
 

@@ -88,7 +88,7 @@ GAPS = [
     (["frame.0003.exr", "frame.0004.exr", "frame.0007.exr"], r"frame\.0005\.exr: expected this frame", "5 to 6"),
     (["a.8.exr", "a.11.exr"], r"a\.9\.exr: .* between a\.8\.exr and a\.11\.exr", "9 to 10"),
     (["f.-0002.exr", "f.0001.exr"], r"f\.-0001\.exr: ", "-1 to 0"),
-    (["1.exr", "3.exr", "5.exr", "9.exr"], r"2\.exr: ", "missing in all: 2, 4, 6 to 8"),
+    (["1.exr", "3.exr", "5.exr", "9.exr"], r"2\.exr: ", "all missing frames: 2, 4, 6 to 8"),
     (["1.exr", f"{10**30}.exr"], r"2\.exr: ", "2 to 9999"),
 ]  # fmt: skip
 
@@ -180,7 +180,7 @@ STRANGERS = ["frame.0002.exr.part", "frame.0002.tif", "Frame.0003.tmp", "frame.e
 def test_what_looks_like_a_frame_and_is_none_is_said(tmp_path: Path, stranger: str) -> None:
     files = touched(tmp_path, "frame.0000.exr", "frame.0001.exr")
     touched(tmp_path, stranger)
-    with pytest.warns(UserWarning, match=f"not read, though named much like frame.*: {stranger}$"):
+    with pytest.warns(UserWarning, match=f"not read, but named almost like frame.*: {stranger}$"):
         assert find_frames([tmp_path]) == files
 
 

@@ -81,7 +81,7 @@ def test_json_is_all_that_is_printed_and_the_first_filter_is_tested(
         ("--size: expected at least 11x11 pixels, which SSIM needs, got 64x8", ["swing", "--size", "64x8"]),
         ("'--spp'", ["swing", "--spp", "1"]),
         ("'--frames'", ["swing", "--frames", "0"]),
-        ("--filters: expected names out of kalman", ["swing", "--filters", "nlm"]),
+        ("--filters: expected names among kalman", ["swing", "--filters", "nlm"]),
     ],
 )
 def test_what_cannot_be_done_is_said_before_anything_is_rendered(

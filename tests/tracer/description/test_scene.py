@@ -112,16 +112,16 @@ def test_the_models_frame_is_turned_upright_and_scaled(describe: Describe) -> No
     [
         (
             {"materials": {"steel": {"type": "diffuse"}}},
-            r"materials: expected names out of the model \(lamp, wood\), found 'steel'",
+            r"materials: expected names of the model \(lamp, wood\), found 'steel'",
         ),
-        ({"lights": [LAMP | {"material": "x"}]}, r"lights: material: expected names out of the model .* found 'x'"),
+        ({"lights": [LAMP | {"material": "x"}]}, r"lights: material: expected names of the model .* found 'x'"),
         (
             {"materials": {"wood": {"type": "diffuse", "base_texture": True}}},
             r"materials\.wood: base_texture: expected",
         ),
         (
             {"animation": {"kind": "rigid rotation about +Y", "nodes": ["door"], "angle_deg": [0]}},
-            r"animation: nodes: expected names out of the model \(lamp, post, wall\), found 'door'",
+            r"animation: nodes: expected names of the model \(lamp, post, wall\), found 'door'",
         ),
         ({"model": "../elsewhere.glb"}, "expected a file inside the scene's folder, found '../elsewhere.glb'"),
         ({"model": "/etc/hostname"}, "expected a file inside the scene's folder"),

@@ -22,13 +22,13 @@ def demo(
     size: Size = "640x360",
     reference_spp: Annotated[
         int,
-        typer.Option(min=1, metavar="SPP", help="Samples per pixel of the references; most of the time goes here."),
+        typer.Option(min=1, metavar="SPP", help="Samples per pixel of the references, which take most of the time."),
     ] = 256,
 ) -> None:
-    """Render the built-in scene, denoise it and show what was gained.
+    """Render the built-in scene, denoise it and print how much better it is.
 
-    Renders a moving camera at 1 sample per pixel, denoises each frame as it comes, renders references of a few
-    frames, and writes the sequences (EXR), stills side by side (PNG) and an animated preview (WebP).
+    Renders a moving camera at 1 sample per pixel, denoises each frame at once, renders references of a few frames,
+    and writes the sequences (EXR), still pictures side by side (PNG) and an animated preview (WebP).
 
     \b
     Examples:

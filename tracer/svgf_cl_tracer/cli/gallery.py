@@ -36,7 +36,8 @@ if TYPE_CHECKING:
 
 def scenes(
     others: Annotated[
-        list[str], typer.Argument(metavar="[SCENE]...", help="Scene files and folders to show before them.")
+        list[str],
+        typer.Argument(metavar="[SCENE]...", help="Scene files and folders to show before the built-in ones."),
     ] = [],  # noqa: B006  # never changed; typer wants the default spelled here
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="FILE", help="Write a contact sheet: .png or .webp.")
@@ -49,16 +50,16 @@ def scenes(
     ] = None,
     exposure: Exposure = 0.0,
 ) -> None:
-    """List the built-in scenes: what is hard about each, and how many frames show it.
+    """List the built-in scenes, why each is hard to denoise, and how many frames it has.
 
-    With thumbnails, where the terminal has colours. Or, with --output, draw them all on a contact sheet, each --size.
-    Each picture shows the middle frame, and is exposed by itself before --exposure is added.
+    Shows thumbnails if the terminal has colours. With --output, draws all scenes on a contact sheet, each with
+    --size. Each picture shows the middle frame with its own exposure, to which --exposure is added.
 
     \b
     Examples:
       svgf-cl scenes
       svgf-cl scenes -o scenes.png
-      svgf-cl scenes ../shared/scenes/sponza ../shared/scenes/fox/Fox.glb --sky 1,1,1 --size 640x360 -o all.webp
+      svgf-cl scenes my_scene Fox.glb --sky 1,1,1 --size 640x360 -o all.webp
     """
     require_tracer()
     from svgf_cl.io.panels import contact_sheet

@@ -49,8 +49,10 @@ def render(
     camera: Annotated[list[str], typer.Option(metavar="TEXT", help=CAMERA_HELP)] = [],  # noqa: B006
     sky: Annotated[str | None, typer.Option(metavar="R,G,B|FILE", help=SKY_HELP)] = None,
     alternative_lights: Annotated[bool, typer.Option("--alternative-lights", help=ALTERNATIVE_HELP)] = False,
-    jitter: Annotated[bool, typer.Option(help="Move the rays within the pixel, by a new offset each frame.")] = True,
-    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Another seed gives other noise.")] = 0,
+    jitter: Annotated[
+        bool, typer.Option(help="Move the rays within the pixel, with a new offset in each frame.")
+    ] = True,
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Seed of the noise.")] = 0,
     bounces: Annotated[int, typer.Option(metavar="N", min=0, help="Surfaces a path visits after the first.")] = 1,
     reference_spp: Annotated[int, typer.Option(min=0, metavar="SPP", help=REFERENCE_HELP)] = 0,
     until_error: Annotated[float | None, typer.Option(metavar="ERROR", help=ERROR_HELP)] = None,
@@ -58,15 +60,15 @@ def render(
 ) -> None:
     """Render a sequence with the built-in path tracer.
 
-    Writes frame.0000.exr and so on: noisy radiance and all that the denoiser wants to know, as named channels; with
-    --reference-spp or --until-error also reference.0000.exr and so on. References are kept in the user's cache folder
-    as they grow. After a break the same command goes on where it was: frames that are there already, whole and made
-    from the same scene with the same options by the same version, are kept.
+    Writes frame.0000.exr and so on: noisy radiance and all fields that the denoiser uses, as named channels. With
+    --reference-spp or --until-error it also writes reference.0000.exr and so on. References are stored in the user's
+    cache folder while they are rendered. After an interruption the same command continues: it keeps complete frames
+    that were made from the same scene with the same options and version.
 
     \b
     Examples:
       svgf-cl render cornell -o out/box
-      svgf-cl render ../shared/scenes/garden --alternative-lights -o out/garden
+      svgf-cl render my_scene --alternative-lights -o out/evening
       svgf-cl render sponza.glb --camera 8,3,0/0,3,0/60 --camera 6,2,1/0,3,0/60 --sky 0.8,0.9,1 -o out/sponza
       svgf-cl render cornell --frames 4 --size 320x180 --reference-spp 256 -o out/box
       svgf-cl render cornell --frames 4 --until-error 0.02 --scheduler tcp://10.0.0.7:8786 -o out/box

@@ -1,4 +1,4 @@
-"""The animation of a description: nodes of the model, and all that hangs on them, carried through the world."""
+"""The animation of a description: how nodes of the model, and the nodes below them, move through the world."""
 
 from __future__ import annotations
 
@@ -17,22 +17,24 @@ Turn = Annotated[list[float], Field(min_length=1), unit("degrees")]
 
 
 class Animation(Part):
-    """What all animations have."""
+    """Fields of all animations."""
 
-    nodes: Names = Field(description="Names of nodes in the model.")
-    pivot: Position = Field((0.0, 0.0, 0.0), description="The point that turns and scalings leave where it is.")
-    repeats: bool = Field(False, description="Begin again after the last time, in place of standing still.")
+    nodes: Names = Field(description="Names of the nodes that move.")
+    pivot: Position = Field((0.0, 0.0, 0.0), description="The point that stays in place in rotations and scalings.")
+    repeats: bool = Field(
+        False, description="If true, the motion starts again after the last time; otherwise the nodes stop."
+    )
     note: str = Field("", description="For information.")
 
 
 class Rotation(Animation, title="rigid rotation"):
-    """A turn about an axis of the world, from where the model has the nodes."""
+    """A rotation about an axis of the world, relative to the position in the model."""
 
     kind: Literal["rigid rotation about +X", "rigid rotation about +Y", "rigid rotation about +Z"]
     angle_deg: Turn = Field(
-        description="Angles to turn through, less than 180 apart; anticlockwise seen from the axis' tip."
+        description="Angles, each less than 180 from the one before; positive is anticlockwise, seen from +axis."
     )
-    times_s: Seconds | None = Field(None, description="When each is reached; where absent, one a second from 0 on.")
+    times_s: Seconds | None = Field(None, description="Time of each angle. Default: 0, 1, 2 and so on.")
 
     @model_validator(mode="after")
     def _agree(self) -> Rotation:
@@ -43,23 +45,25 @@ class Rotation(Animation, title="rigid rotation"):
         return self
 
     def motion(self) -> Motion:
-        """What carries the nodes from where the model has them."""
+        """The motion that moves the nodes from their position in the model."""
         times = self.times_s or range(len(self.angle_deg))
         axis = AXES[self.kind.split()[-1]]
         return Motion.turning(self.pivot, axis, list(times), self.angle_deg, repeats=self.repeats)
 
 
 class Keyframed(Animation, title="keyframes"):
-    """Places, turns and sizes at keyframes, each relative to where the model has the nodes."""
+    """Translations, rotations and scales at keyframes, relative to the position in the model."""
 
     kind: Literal["keyframes"]
-    times_s: Seconds = Field(description="When the keyframes are.")
-    translation: Annotated[list[Vector], unit("m")] | None = Field(None, description="Way from the place in the model.")
+    times_s: Seconds = Field(description="Times of the keyframes.")
+    translation: Annotated[list[Vector], unit("m")] | None = Field(
+        None, description="Offset from the position in the model."
+    )
     rotation: list[tuple[float, float, float, float]] | None = Field(
-        None, description="Turn about the pivot as a quaternion x, y, z, w."
+        None, description="Rotation about the pivot as a quaternion x, y, z, w."
     )
     scale: list[Vector] | None = Field(None, description="Factors along the world's axes, from the pivot.")
-    interpolation: Literal["linear", "step"] = Field("linear", description="How to go from one keyframe to the next.")
+    interpolation: Literal["linear", "step"] = Field("linear", description="How values change between keyframes.")
 
     @model_validator(mode="after")
     def _agree(self) -> Keyframed:
@@ -79,7 +83,7 @@ class Keyframed(Animation, title="keyframes"):
         return {name: value for name, value in values.items() if value is not None}
 
     def motion(self) -> Motion:
-        """What carries the nodes from where the model has them."""
+        """The motion that moves the nodes from their position in the model."""
         step = self.interpolation == "step"
         tracks = {name: Track(self.times_s, values, step, self.repeats) for name, values in self._given().items()}
         return Motion([translation(self.pivot), Keyframes(**tracks), translation(np.negative(self.pivot))])

@@ -1,4 +1,4 @@
-"""The file as a whole: read, checked, and what is wrong with it said in one line."""
+"""Read and check a scene.json; an error is one line that says what is wrong."""
 
 from __future__ import annotations
 
@@ -26,27 +26,30 @@ TURNS = {"y": np.eye(4), "z": np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0
 
 
 class SceneDescription(Part, title="Scene"):
-    """A scene: a model, and what its file lacks. Positions are in the world: +y is up, in metres."""
+    """A model, and what its file does not contain. Positions are in world space, in metres, with +y up."""
 
-    model: str = Field(description="A .glb, .gltf or .obj file in the description's folder.")
-    up_axis: Literal["y", "z"] = Field("y", description="The model's axis that is up.")
+    model: str = Field(description="A .glb, .gltf or .obj file in the folder of scene.json.")
+    up_axis: Literal["y", "z"] = Field("y", description="The axis of the model that points up.")
     metres_per_unit: Annotated[float, Field(gt=0), unit("m")] = Field(1.0, description="The model's unit of length.")
     camera: View | list[View] | None = Field(
         None,
-        description="One, or several that it moves through in equal times. Absent, the model's or one that sees all.",
+        description="One, or several that it passes at equal intervals. Default: the model's, or one that sees all.",
     )
-    lights: list[AnyLight] = Field([], description="Besides the lights of the model; at most one of them a sky.")
-    alternative_lights: list[AnyLight] = Field([], description="In place of `lights` with `--alternative-lights`.")
+    lights: list[AnyLight] = Field(
+        [], description="Lights in addition to those of the model; at most one of them is a sky."
+    )
+    alternative_lights: list[AnyLight] = Field(
+        [], description="With `--alternative-lights`, these are used instead of `lights`."
+    )
     materials: dict[str, AnyMaterial] = Field(
-        {}, description="In place of the model's materials of these names, emission included."
+        {}, description="They replace the model's materials of the same names, including their emission."
     )
     animation: AnyAnimation | list[AnyAnimation] | None = Field(
-        None, description="A motion, or several; where they share a node, each is on top of those before it."
+        None,
+        description="One motion or several. If several move the same node, each is applied on top of those before it.",
     )
     units: str = Field("", description="For information.")
-    dropped: str = Field(
-        "", description="For information: what the model was without when it was made from its source."
-    )
+    dropped: str = Field("", description="For information: what was lost when the model was converted from its source.")
 
     @field_validator("lights", "alternative_lights")
     @classmethod
@@ -57,11 +60,11 @@ class SceneDescription(Part, title="Scene"):
         return lights
 
     def views(self) -> list[View]:
-        """The cameras, however many."""
+        """The cameras: none, one or several."""
         return _as_list(self.camera)
 
     def animations(self) -> list[AnyAnimation]:
-        """The animations, however many."""
+        """The animations: none, one or several."""
         return _as_list(self.animation)
 
     def to_world(self) -> Float64:
@@ -81,7 +84,7 @@ def read_description(path: Path) -> SceneDescription:
     Raises
     ------
     SceneError
-        It is no JSON, or something in it is missing, unknown or out of its range; the first such thing is named.
+        It is not JSON, or a field is missing, unknown or out of range; the error names the first such field.
     """
     if path.stat().st_size > MAX_BYTES:
         raise SceneError(f"{path}: expected at most {MAX_BYTES} bytes, found {path.stat().st_size}")

@@ -23,61 +23,61 @@ class SunLight(Part, title="sun"):
     """A disc of light at infinity."""
 
     type: Literal["sun"]
-    direction_to_light: Direction = Field(description="From the scene towards the middle of the disc.")
-    irradiance: Irradiance = Field(description="On a plane that faces the disc.")
+    direction_to_light: Direction = Field(description="Direction from the scene to the centre of the disc.")
+    irradiance: Irradiance = Field(description="Irradiance on a plane that faces the disc.")
     angular_radius_deg: Annotated[float, Field(ge=0, lt=90), unit("degrees")] = Field(
-        0.25, description="Half the angle under which the disc is seen; at 0 it is not seen, but it lights."
+        0.25, description="Half the angle of the disc as seen from the scene. At 0 it is invisible, but gives light."
     )
 
     def light(self) -> Sun:
-        """The tracer's own."""
+        """The same as the tracer's own class."""
         return Sun(self.direction_to_light, self.irradiance, self.angular_radius_deg)
 
 
 class ConstantSky(Part, title="sky_constant"):
-    """The same light from everywhere outside the scene."""
+    """A sky that has the same radiance in all directions."""
 
     type: Literal["sky_constant"]
-    radiance: Radiance = Field(description="Of the sky.")
+    radiance: Radiance = Field(description="Radiance of the sky.")
 
 
 class EnvironmentMap(Part, title="envmap"):
-    """An image of all that is outside the scene, in equirectangular projection."""
+    """An image of the surroundings in all directions, in equirectangular projection."""
 
     type: Literal["envmap"]
-    file: str = Field(description="A .hdr or .exr image in the description's folder.")
+    file: str = Field(description="A .hdr or .exr image in the folder of scene.json.")
     to_world_rows: tuple[Vector, Vector, Vector] = Field(
         ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
         description=(
-            "Rotation from the image's frame into the world's, row by row. In the image's frame the middle column is "
-            "towards +z, the column a quarter of the width from the left towards +x, and row 0 is up, +y: as in "
-            "OpenEXR and Mitsuba."
+            "Rotation from image space to world space, as a list of rows. In image space the middle column is at +z, "
+            "the column at a quarter of the width from the left is at +x, and row 0 is at the top, +y, as in OpenEXR "
+            "and Mitsuba."
         ),
     )
     note: str = Field("", description="For information.")
 
 
 class AreaLight(Part, title="area"):
-    """A material of the model that emits light from its front, the side from which corners run counter-clockwise."""
+    """A material of the model that emits light from its front: the side where corners are counter-clockwise."""
 
     type: Literal["area"]
-    material: str = Field(description="Its name in the model.")
-    radiance: Radiance = Field(description="What it emits.")
-    mesh: str = Field("", description="For information: where the material is.")
+    material: str = Field(description="The name of the material in the model.")
+    radiance: Radiance = Field(description="Radiance that it emits.")
+    mesh: str = Field("", description="For information: the mesh that has the material.")
 
 
 class Rectangle(Part, title="rect"):
-    """A black rectangle that emits light to the side of edge_u x edge_v."""
+    """A black rectangle that emits light on the side to which edge_u x edge_v (the cross product) points."""
 
     type: Literal["rect"]
     name: str = Field("", description="For information.")
-    corner: Position = Field(description="One of its corners.")
-    edge_u: Position = Field(description="From there to the next corner.")
-    edge_v: Position = Field(description="From there to the other next corner.")
-    radiance: Radiance = Field(description="What it emits.")
+    corner: Position = Field(description="One corner.")
+    edge_u: Position = Field(description="Vector from `corner` to one neighbouring corner.")
+    edge_v: Position = Field(description="Vector from `corner` to the other neighbouring corner.")
+    radiance: Radiance = Field(description="Radiance that it emits.")
 
     def instance(self) -> Instance:
-        """The tracer's own."""
+        """The same as the tracer's own class."""
         corners = np.array(self.corner) + SQUARE[..., :1] * self.edge_u + SQUARE[..., 1:] * self.edge_v
         return Instance(corners, Material((0.0, 0.0, 0.0), self.radiance))
 

@@ -1,4 +1,4 @@
-"""The materials of a description, after the types of Mitsuba's: each is told in full, but for the model's texture."""
+"""The materials of a description, named as in Mitsuba. Each is complete, except for the model's texture."""
 
 from __future__ import annotations
 
@@ -20,26 +20,28 @@ One = Annotated[float, Field(ge=1, le=1)]
 
 
 class Surface(Part):
-    """What all materials have."""
+    """Fields of all materials."""
 
     color: Reflectance = Field(
         (1.0, 1.0, 1.0),
-        description="Reflectance, of glass transmittance; base texture and vertex colours are multiplied by it.",
+        description="Reflectance; of glass, transmittance. Base texture and vertex colours are multiplied by it.",
     )
     base_texture: bool = Field(False, description="Whether the model's base colour texture is used.")
     mask: bool = Field(
-        False, description="Whether there are holes where the texture's alpha is below the model's cutoff."
+        False, description="Whether the surface has holes where the texture's alpha is below the model's cutoff."
     )
-    twosided: bool = Field(True, description="For information: all that is not glass reflects on both sides.")
-    radiance: Radiance | None = Field(None, description="For information: what an area light of this material emits.")
+    twosided: bool = Field(True, description="For information: every surface except glass reflects on both sides.")
+    radiance: Radiance | None = Field(
+        None, description="For information: radiance of an area light with this material."
+    )
 
     def on(self, model: Material) -> Material:
-        """The material that this makes of the model's.
+        """The material that replaces this one of the model.
 
         Raises
         ------
         SceneError
-            The model's has no texture, or one without alpha, where it is wanted.
+            A texture is needed, and the model's material has none; or the mask needs one.
         """
         if self.base_texture and model.base_texture is None:
             raise SceneError("base_texture: expected a texture in the model, found none")
@@ -53,7 +55,7 @@ class Surface(Part):
 
 
 class Diffuse(Surface, title="diffuse"):
-    """A surface that scatters alike to all sides (Lambert)."""
+    """A matt surface (Lambert)."""
 
     type: Literal["diffuse"]
     roughness: One = Field(1.0, description="For information.")
@@ -61,7 +63,7 @@ class Diffuse(Surface, title="diffuse"):
 
 
 class Glossy(Surface):
-    """What is common to plastic and conductor."""
+    """Fields of plastic and conductor."""
 
     roughness: Share = Field(description="Perceptual roughness: the square root of the GGX width.")
     alpha: Share | None = Field(None, description="For information: the GGX width.")
@@ -97,7 +99,7 @@ class Conductor(Glossy, title="conductor"):
 
 
 class Dielectric(Surface, title="dielectric"):
-    """Smooth glass, whose inside is where the surface's back is."""
+    """Smooth glass. Its inside is behind the surface."""
 
     type: Literal["dielectric"]
     ior: Index = Field(1.5, description="Refractive index.")

@@ -126,4 +126,4 @@ def _check_names(where: str, names: Iterable[str], known: Set[str]) -> None:
     for name in names:
         if name not in known:
             there = ", ".join(sorted(filter(None, known))) or "it names none"
-            raise SceneError(f"{where}: expected names out of the model ({there}), found {name!r}")
+            raise SceneError(f"{where}: expected names of the model ({there}), found {name!r}")

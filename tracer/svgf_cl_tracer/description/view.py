@@ -12,18 +12,24 @@ from .values import Direction, NonNegative, Part, Position, Share, unit
 
 
 class View(Part, title="Camera"):
-    """A camera."""
+    """A perspective camera."""
 
-    position: Position = Field(description="The eye.")
-    look_at: Position = Field(description="A point in the middle of the picture, and in focus.")
-    up: Direction = Field((0.0, 1.0, 0.0), description="What is up in the picture.")
+    position: Position = Field(description="Position of the camera.")
+    look_at: Position = Field(description="A point in the middle of the picture; the camera focuses on it.")
+    up: Direction = Field((0.0, 1.0, 0.0), description="The direction that points up in the picture.")
     fov_y_deg: Annotated[float, Field(gt=0, lt=180), unit("degrees")] = Field(
         45.0, description="Vertical field of view."
     )
-    aperture: Annotated[NonNegative, unit("m")] = Field(0.0, description="Diameter of the lens; at 0 all is sharp.")
-    shutter: Share = Field(0.0, description="How long the shutter is open, as a share of the time between two frames.")
-    source_width: int = Field(0, ge=0, description="For information: of the picture that the scene's author made.")
-    source_height: int = Field(0, ge=0, description="For information: of the picture that the scene's author made.")
+    aperture: Annotated[NonNegative, unit("m")] = Field(
+        0.0, description="Diameter of the lens. At 0 everything is sharp."
+    )
+    shutter: Share = Field(
+        0.0, description="How long the shutter is open, as a fraction of the time between two frames."
+    )
+    source_width: int = Field(0, ge=0, description="For information: size of the picture that the scene's author made.")
+    source_height: int = Field(
+        0, ge=0, description="For information: size of the picture that the scene's author made."
+    )
 
     def camera(self) -> Camera:
         """The tracer's own."""

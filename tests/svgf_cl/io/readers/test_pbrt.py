@@ -94,5 +94,5 @@ def test_components_of_an_old_name_that_are_missing_are_named(tmp_path: Path) ->
     planes = {at.number: pbrt(at, old=True) for at in moments()}
     for own in planes.values():
         del own["Py"]
-    with pytest.raises(FileError, match=r"shot_0001\.exr: expected channels Px Py Pz, found Px Pz alone"):
+    with pytest.raises(FileError, match=r"shot_0001\.exr: expected channels Px Py Pz, found only Px Pz"):
         open_sequence(written(tmp_path, planes, headers()))
