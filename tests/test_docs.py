@@ -48,7 +48,7 @@ LIMITS = (
     ("files.md", f"within {apart.TIMEOUT_SECONDS} seconds"),
     ("conventions.md", f"whole numbers up to {power(frames.MAX_ID)}"),
     ("conventions.md", "Depth is {} to {}".format(*map(written, temporal.DEPTH_RANGE))),
-    ("view.md", f"in memory, up to {clip.MEMORY >> 30} GiB"),
+    ("view.md", f"stay in memory, up to {clip.MEMORY >> 30} GiB"),
     ("view.md", f"in memory ({player.MEMORY >> 20} MiB of pictures)"),
     ("view.md", f"begins anew {chunks.WARM_UP} frames before"),
     ("view.md", f"a past of less than {player.SETTLED} frames"),

@@ -64,7 +64,9 @@ def view(
     spp: Annotated[
         int | None,
         typer.Option(
-            metavar="N", min=2, help="Also render references of a scene, with N samples per pixel; slow once."
+            metavar="N",
+            min=2,
+            help="Also render references of the scene with N samples per pixel; they are kept for the next run.",
         ),
     ] = None,
     allow_gaps: AllowGaps = False,
@@ -117,7 +119,7 @@ def refuse_files(options: Mapping[str, object]) -> None:
     """Raise `SvgfError` where an option of files was given though there are none."""
     for name, value in options.items():
         if value:
-            raise SvgfError(f"{name}: expected frames in files beside it, got a scene")
+            raise SvgfError(f"{name}: expected frames in files, got a scene")
 
 
 def of_files(inputs: Sequence[str], reference: Path | None, how: ReadAs, *, allow_gaps: bool) -> Clip:
@@ -139,9 +141,9 @@ def of_scene(inputs: Sequence[str], shape: tuple[int, int], frames: int | None, 
         refuse_spp(spp)
         return room(shape, frames)
     if len(inputs) > 1:
-        raise SvgfError(f"expected one scene, or frames, got {len(inputs)} things, of which some are scenes")
+        raise SvgfError(f"expected one scene, or only frames, got {len(inputs)} arguments with a scene among them")
     footage = open_footage(inputs[0], shape, frames, spp)
-    typer.echo(f"{footage.name}: the first frames are rendered before the page is there", err=True)
+    typer.echo(f"{footage.name}: rendering the first two frames, then the page opens", err=True)
     with progress_bar("references", footage.steps if spp else 0) as advance:
         return scene(footage, has_references=spp is not None, advance=advance)
 
@@ -149,4 +151,4 @@ def of_scene(inputs: Sequence[str], shape: tuple[int, int], frames: int | None, 
 def refuse_spp(spp: int | None) -> None:
     """Raise `SvgfError` where samples are given for the room, whose references are exact."""
     if spp is not None:
-        raise SvgfError("--spp: expected a scene to render beside it, got none; the room's references are exact")
+        raise SvgfError("--spp: expected a scene, got none; the references of the room are exact")

@@ -233,7 +233,7 @@ function draw({ about, pictures }) {
     if (place >= 0) paint(figure.querySelector("canvas"), new Uint8Array(pictures, place * size, size));
     const error = fixed(about.temporal[name], 4, "");
     const measures = [fixed(about.psnr[name], 1, " dB"), error && `temporal error ${error}`];
-    figure.querySelector("output").value = place < 0 ? "none of this frame" : measures.filter(Boolean).join(", ");
+    figure.querySelector("output").value = place < 0 ? "no reference for this frame" : measures.filter(Boolean).join(", ");
   }
   shownIndex = about.index;
   transport.position.value = about.index;
