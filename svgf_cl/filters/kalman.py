@@ -30,9 +30,9 @@ STEPS = (1, 2, 4)  # of these, between the taps of the passes after the first
 class Kalman(WaveletFilter):
     """Parameters of the Kalman filter. Equations: docs/algorithm.md.
 
-    Light accumulates unfiltered, with a gain that depends on its uncertainty. A test over neighbourhoods of growing size
-    finds where the light has changed; there the history is corrected and trusted less. The a-trous levels filter only
-    the picture that is shown, and use the variance of a mean instead of that of a sample.
+    Light accumulates unfiltered, with a gain that depends on its uncertainty. A test over neighbourhoods of growing
+    size finds where the light has changed; there the history is corrected and trusted less. The a-trous levels filter
+    only the picture that is shown, and use the variance of a mean instead of that of a sample.
     """
 
     name: ClassVar[str] = "kalman"
