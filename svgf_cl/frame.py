@@ -162,7 +162,7 @@ class Frame:
             missing = "direct" if self.direct is None else "indirect"
             raise FrameError(missing, "both of direct and indirect, or neither", "nothing")
         if self.color is None and self.direct is None:
-            raise FrameError("color", "an array (or direct and indirect in its place)", "nothing")
+            raise FrameError("color", "an array (or direct and indirect instead)", "nothing")
 
 
 def check_field(name: str, value: Any, shape: Shape) -> None:

@@ -239,7 +239,9 @@ def result(shot: Shot, source: ShotFrame, denoised: Denoised, style: Style) -> I
     if style.layer:
         planes = {in_layer(name, shot.reading.view_layer, style.layer): plane for name, plane in planes.items()}
         if there := planes.keys() & source.image.planes.keys():
-            raise FileError(f"{source.path}: expected no layer {style.layer!r} yet, found {min(there)}; choose another")
+            raise FileError(
+                f"{source.path}: expected no layer {style.layer!r} yet, found {min(there)}; choose another name"
+            )
     return denoised_file(planes, source.image, beside=shot.reading.picture[0], plain=style.plain)
 
 

@@ -69,7 +69,7 @@ def check_on_host(frame: Frame) -> None:
     """Raise `FrameError` unless the fields are numpy arrays that fit together."""
     for name, value in frame.present().items():
         if not isinstance(value, np.ndarray):
-            raise FrameError(name, "a numpy.ndarray, as motion is turned round on the host", type(value).__name__)
+            raise FrameError(name, "a numpy.ndarray, because this is computed on the host", type(value).__name__)
     frame.check(frame.shape)
 
 
