@@ -4,7 +4,7 @@
     python examples/blender.py [FOLDER] [--scene SCENE.blend]        # after `pip install bpy`
 
 Without a scene it builds a small one. The scene's file is not changed. svgf_cl need not be installed in Blender's own
-Python: `svgf-cl` is called as a command, which `--svgf-cl` names where it is not on the PATH.
+Python: `svgf-cl` is called as a command; if it is not on the PATH, name it with `--svgf-cl`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import Any
 
 import bpy
 
-# The passes by their names in View Layer Properties > Passes, and what Python calls their switches.
+# The names of passes in View Layer Properties > Passes, and their switches in Python.
 DATA_PASSES = {
     "Z": "use_pass_z",
     "Normal": "use_pass_normal",

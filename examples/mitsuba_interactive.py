@@ -1,6 +1,6 @@
 """Mitsuba 3, interactively: each frame goes from the renderer to the denoiser as an array, without a file.
 
-It needs `pip install mitsuba` beside svgf_cl. The camera moves through Mitsuba's own Cornell box.
+It needs `pip install mitsuba` in addition to svgf_cl. The camera moves through Mitsuba's own Cornell box.
 """
 
 from __future__ import annotations

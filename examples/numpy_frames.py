@@ -1,4 +1,4 @@
-"""Denoise a sequence of numpy arrays: what a renderer makes of each frame goes in, a clean picture comes out."""
+"""Denoise a sequence of numpy arrays: each call takes the arrays of one frame and returns a clean picture."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ FRAMES = 16
 
 
 def main(folder: Path) -> None:
-    """Denoise some frames; write the last, noisy and denoised, and say how far each is from the truth."""
+    """Denoise some frames, write the last one noisy and denoised, and print the PSNR of both."""
     with Denoiser((HEIGHT, WIDTH)) as den:
-        # Stands in for your renderer: a camera in a tiled room, whose noise is that of one sample a pixel.
+        # This replaces your renderer: a camera in a tiled room, with the noise of one sample per pixel.
         for made in room_frames((HEIGHT, WIDTH), FRAMES):
             frame = Frame.of(
                 color=made.color,  # (H, W, 3) noisy linear radiance; (H, W, 4) with alpha gives (H, W, 4)

@@ -1,4 +1,4 @@
-"""Denoise what a renderer in OpenCL has on the device: no pixel goes by way of the host before it is clean."""
+"""Denoise frames of an OpenCL renderer on the device: noisy pixels are never copied to the host."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`Camera`, and the motion of what stands still between the cameras of two frames.
+"""`Camera`, and the motion of still geometry between the cameras of two frames.
 
 Everything is computed in double precision: a camera may stand far from the origin, and a motion is a small difference
 of two positions.
@@ -212,7 +212,7 @@ class Camera:
 def motion_from_cameras(
     camera: Camera, previous: Camera, *, depth: npt.ArrayLike | None = None, position: npt.ArrayLike | None = None
 ) -> npt.NDArray[np.float32]:
-    """Compute the motion of geometry that stands still, from the cameras of a frame and of the one before.
+    """Compute the motion of still geometry from the cameras of this frame and the previous one.
 
     Give the camera of the next frame as `previous` for the motion to the next frame.
 

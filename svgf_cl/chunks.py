@@ -1,4 +1,4 @@
-"""A shot cut into chunks that different processes denoise: each filters some frames before its own to have a past."""
+"""Chunks of a shot that different processes denoise; each filters some frames before its own, for the history."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ CHUNK = 64
 
 
 def cut(job: Job, written: range, size: int, warm_up: int) -> list[Chunk]:
-    """Cut the frames that are to be written into chunks of so many.
+    """Divide the frames to write into chunks of this length.
 
     Each filters `warm_up` more before them, and as many behind them as the job looks ahead, as far as there are any
     between two gaps: history ends at a gap.
@@ -86,7 +86,7 @@ def absolute(job: Job) -> Job:
 
 
 def _on_worker(look: Look | None, job: Job, chunk: Chunk) -> list[Done]:
-    """One task. What depends on the machine is told with its name."""
+    """One task; errors that depend on the machine name it."""
     try:
         return list(run(job, chunk, look))
     except (DeviceError, FileError) as error:

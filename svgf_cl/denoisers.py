@@ -64,7 +64,7 @@ class Denoisers:
         return self._made[key].stage(name)
 
     def reset(self) -> None:
-        """Forget the past of all, as at a cut."""
+        """Discard all history, as at a cut."""
         for made in self._made.values():
             made.reset()
 

@@ -1,4 +1,4 @@
-"""The errors a user can meet. Every message says what was expected, what came, and what to do next."""
+"""Errors for users. Every message says what was expected, what was found, and what to do next."""
 
 LONGEST_SHOWN = 80  # characters of a wrong value that a message repeats
 
@@ -19,7 +19,7 @@ class FrameError(SvgfError):
 
 
 class ArgumentError(SvgfError):
-    """An argument of a call beside the frame's fields is wrong: where the result goes, what to wait for."""
+    """An argument of a call is wrong that is not a field: the array for the result, or events to wait for."""
 
     def __init__(self, argument: str, expected: str, got: str) -> None:
         super().__init__(argument, expected, got)
@@ -33,7 +33,7 @@ class SettingsError(SvgfError):
 
 
 class DeviceError(SvgfError):
-    """No OpenCL device works, or the one in use cannot build a kernel, has no room, or broke off."""
+    """No OpenCL device works, or the one in use cannot build a kernel, has too little memory, or failed."""
 
 
 class FileError(SvgfError):
@@ -45,12 +45,12 @@ class SchedulerError(SvgfError):
 
 
 def one_line(message: object) -> str:
-    """`message` without its line breaks: what libraries say goes into errors that are one line."""
+    """`message` without its line breaks, because our errors are one line."""
     return " ".join(str(message).split())
 
 
 def shown(value: object) -> str:
-    """What came, for a message: on one line, however long, and even where it cannot be written out."""
+    """A value for a message: on one line, shortened, and also if it has no text of its own."""
     try:
         text = one_line(repr(value))
     except Exception:  # a whole number of 5000 digits, say

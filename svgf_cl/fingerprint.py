@@ -1,4 +1,4 @@
-"""Which code a process has: another machine makes the same bits only with the same code and libraries."""
+"""The version of the code of a process: two machines give the same bits only with the same code and libraries."""
 
 from __future__ import annotations
 

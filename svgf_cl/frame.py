@@ -1,4 +1,4 @@
-"""`Frame`: what a renderer hands over for one image. Shapes and meanings are fixed in docs/conventions.md."""
+"""`Frame`: the input for one image. docs/conventions.md defines shapes and meanings."""
 
 from __future__ import annotations
 
@@ -138,11 +138,11 @@ class Frame:
 
     @property
     def picture_shape(self) -> tuple[int, int, int]:
-        """Of what is made of it: (height, width, 3), or 4 where `color` has alpha."""
+        """The shape of the result: (height, width, 3), or 4 channels if `color` has alpha."""
         return (*self.shape, 4 if self.has_alpha else 3)
 
     def layer(self, name: str) -> Any:
-        """What filters know by a name: a field, but `color` without its alpha; or alpha alone, (H, W)."""
+        """The array that filters use by this name: a field, `color` without its alpha, or alpha alone, (H, W)."""
         if name == ALPHA:
             return self.color[..., 3]
         return self.color[..., :3] if name == "color" and self.has_alpha else getattr(self, name)
@@ -162,7 +162,7 @@ class Frame:
             missing = "direct" if self.direct is None else "indirect"
             raise FrameError(missing, "both of direct and indirect, or neither", "nothing")
         if self.color is None and self.direct is None:
-            raise FrameError("color", "an array (or direct and indirect in its place)", "nothing")
+            raise FrameError("color", "an array (or direct and indirect instead)", "nothing")
 
 
 def check_field(name: str, value: Any, shape: Shape) -> None:
@@ -185,20 +185,20 @@ def element_type(name: str) -> type[np.float32] | type[np.uint32]:
 
 
 def without_fourth(name: str, value: UserArray) -> UserArray:
-    """A view of the three channels of a field that has no more, where a fourth comes with them."""
+    """A view of the first three channels, if an array has a fourth that its field does not have."""
     padded = CHANNELS.get(name) == (3,) and name != "color" and len(value.shape) == 3 and value.shape[2] == 4
     return value[..., :3] if padded else value
 
 
 def check_ids(value: np.ndarray) -> None:
-    """Raise `FrameError` where 32 bits cannot hold an id: two of them might become one. Negative ones stay apart."""
+    """Raise `FrameError` if 32 bits cannot hold an id, so that two ids stay different. Negative ids are allowed."""
     for extreme in (int(value.min(initial=0)), int(value.max(initial=0))):
         if not -(2**31) <= extreme < 2**32:
             raise FrameError("id", f"ids in 0..{2**32 - 1}, which fit into 32 bits", str(extreme))
 
 
 def check_array(name: str, value: Any) -> None:
-    """Raise the error of `wrong` unless `value` is of a type that the denoiser reads or writes."""
+    """Raise the error of `wrong` unless the denoiser can read or write arrays of the type of `value`."""
     if not isinstance(value, UserArray):
         raise wrong(name, "a numpy.ndarray or pyopencl.array.Array", type(value).__name__)
 

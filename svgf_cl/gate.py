@@ -1,4 +1,4 @@
-"""Checks that let a change through or stop it, as a file in JUnit's XML, which CI services show."""
+"""Checks that accept or reject a change, as a JUnit XML file for CI services."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NO_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 @dataclass(frozen=True)
 class Check:
-    """One thing that was held against a limit.
+    """One figure that was compared with a limit.
 
     Parameters
     ----------
@@ -61,5 +61,5 @@ def case_element(check: Check) -> ElementTree.Element:
 
 
 def xml_text(text: str) -> str:
-    """Write what XML cannot hold as Python would: names may come from files of anyone."""
+    """Escape characters that XML does not allow, as Python does: names may come from files."""
     return NO_XML.sub(lambda match: ascii(match[0])[1:-1], text)

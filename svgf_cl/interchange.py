@@ -1,4 +1,4 @@
-"""Arrays of other libraries as the denoiser takes them, without a copy where their memory is the host's or OpenCL's."""
+"""Arrays of other libraries for the denoiser, without a copy if their memory is that of the host or of OpenCL."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`Job`: a shot's files in, pictures out; all of it, or a stretch that another machine's stretches fit to."""
+"""`Job`: reads the files of a shot and writes pictures, of the whole shot or of one of its chunks."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Style:
 
 @dataclass(frozen=True)
 class Job:
-    """How a shot is denoised; another process can do a part of it.
+    """How a shot is denoised; another process can denoise a part of it.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Chunk:
-    """A stretch of a shot, by the indices of its frames.
+    """A range of frames of a shot, by index.
 
     Parameters
     ----------
@@ -193,7 +193,7 @@ def run(job: Job, chunk: Chunk, look: Look | None = None, advance: Callable[[], 
 def made(
     shot: Shot, job: Job, chunk: Chunk, look: Look | None, advance: Callable[[], None]
 ) -> Iterator[tuple[int, Made]]:
-    """Index of each frame of a chunk, in order up to the last one that is written, and what is made of it."""
+    """The index and the result of each frame of a chunk, in order, up to the last one that is written."""
     if job.look_ahead is None:
         for each in made_forward(shot, job.method, range(chunk.first, chunk.written.stop), look):
             advance()
@@ -239,7 +239,9 @@ def result(shot: Shot, source: ShotFrame, denoised: Denoised, style: Style) -> I
     if style.layer:
         planes = {in_layer(name, shot.reading.view_layer, style.layer): plane for name, plane in planes.items()}
         if there := planes.keys() & source.image.planes.keys():
-            raise FileError(f"{source.path}: expected no layer {style.layer!r} yet, found {min(there)}; choose another")
+            raise FileError(
+                f"{source.path}: expected no layer {style.layer!r} yet, found {min(there)}; choose another name"
+            )
     return denoised_file(planes, source.image, beside=shot.reading.picture[0], plain=style.plain)
 
 

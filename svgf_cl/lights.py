@@ -1,4 +1,4 @@
-"""`LightsDenoiser`: denoises a picture by the light passes that it is the sum of, so that they still add up to it.
+"""`LightsDenoiser`: denoises a picture by its light passes, which still add up to the picture.
 
 A pass such as Blender's DiffDir is light before it was multiplied by an albedo that has no noise, DiffCol. It is
 filtered as it is and multiplied afterwards: textures never pass through the filter, and shadows of direct light are
@@ -34,7 +34,7 @@ WEIGHTS = np.array(LUMINANCE, np.float32)
 
 @dataclass(frozen=True, eq=False)
 class Denoised:
-    """What was made of a frame.
+    """The result of a frame.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class Denoised:
 
 @dataclass(frozen=True, eq=False)
 class Parts:
-    """A frame, taken apart into what is filtered on its own.
+    """A frame, split into the parts that are filtered separately.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class Parts:
     factors: Mapping[Channels, Picture] = field(default_factory=dict)
 
     def composed(self, made: Mapping[Channels, Picture], error: Picture | None = None) -> Denoised:
-        """Put the picture together from what `LightsDenoiser.filtered` made of the parts."""
+        """Compose the picture from the filtered parts of `LightsDenoiser.filtered`."""
         if self.rest is None:
             return Denoised(made[WHOLE], {}, error)
         picture = np.minimum(self.rest, np.float32(0.0))
@@ -140,7 +140,7 @@ class LightsDenoiser:
         self._denoisers.update(settings)
 
     def reset(self) -> None:
-        """Forget the past, as at a cut."""
+        """Discard the history, as at a cut."""
         self._denoisers.reset()
 
     def profile(self) -> dict[str, float]:
@@ -166,19 +166,19 @@ def single(frame: Frame, light: Picture, albedo: Picture | None) -> Frame:
 
 
 def finite(light: Light) -> Light:
-    """The light, black where it or its factor is not finite, as the filter has it."""
+    """The light, black where it or its factor is not finite, as in the filter."""
     factor = None if light.factor is None else zeroed(light.factor)
     return replace(light, radiance=zeroed(light.radiance), factor=factor)
 
 
 def zeroed(values: Picture) -> Picture:
-    """The values, 0 in place of those that are not finite."""
+    """The values, with 0 instead of those that are not finite."""
     usable = np.isfinite(values)
     return values if usable.all() else np.where(usable, values, np.float32(0.0))
 
 
 def limited(lights: Sequence[Light], rest: Picture) -> tuple[Sequence[Light], Picture]:
-    """The lights, no brighter together than the picture, and what it then has beyond their sum.
+    """The lights, darkened so that their sum is at most the picture, and the rest of the picture.
 
     Where `rest`, what the picture has beyond the lights (H, W, 3), is negative, the renderer clamped a firefly in the
     picture but not in the pass, or something covers a part of the pixel. Noisy lights are darkened there, all by one
@@ -202,7 +202,7 @@ def multiplied(light: Picture, factor: Picture | None) -> Picture:
 
 
 def remainder(frame: Frame, lights: Sequence[Light]) -> Picture:
-    """What the picture has beyond the sum of its lights, (H, W, 3); 0 where that is what rounding leaves."""
+    """The picture minus the sum of its lights, (H, W, 3); 0 if this is only rounding."""
     if frame.color is None:
         return np.zeros_like(lights[0].radiance)
     rest, size = np.array(frame.color), np.abs(frame.color)

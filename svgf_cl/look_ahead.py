@@ -1,4 +1,4 @@
-"""Pictures from earlier and from later frames, for work offline: a forward and a backward run of one filter, averaged.
+"""Pictures from earlier and later frames, for offline work: the mean of a forward and a backward run of a filter.
 
 Equations: docs/algorithm.md, section 9.
 """
@@ -37,7 +37,7 @@ def look_ahead(
     cuts: Iterable[int] = (),
     next_motion: NextMotion | None = None,
 ) -> Iterator[Plane]:
-    """Denoise a sequence, each frame with the help of those before it and of those after it.
+    """Denoise a sequence; each picture uses earlier and later frames.
 
     One denoiser goes over each shot from its first frame on, the other from its last frame back, and the two pictures
     of a frame are averaged by how certain each is. With `ahead`, a shot is cut into blocks of so many frames, and the
@@ -130,7 +130,7 @@ class Walk(Protocol[Item]):
 
 
 def both_ways(walk: Walk[Item], cuts: Sequence[int], ahead: int | None) -> Iterator[tuple[Item, dict[Key, Plane]]]:
-    """Go along a shot both ways, and average what the two filters make of each part of each frame.
+    """Run over a shot in both directions, and average the results of the two filters for each part of each frame.
 
     Parameters
     ----------
@@ -208,7 +208,7 @@ class FramesWalk:
         return motion_to_next(item, later) if self.next_motion is None else self.next_motion(index)
 
     def begin(self, *, backward: bool) -> None:
-        """Forget the past."""
+        """Discard the history."""
         (self.backward if backward else self.forward).reset()
 
     def estimates(self, item: Frame, motion: Plane | None, *, backward: bool) -> dict[Key, Estimate]:
@@ -263,7 +263,7 @@ def file_of(folder: str, index: int) -> Path:
 
 
 def mean(one: Estimate, other: Estimate) -> Plane:
-    """Mean of two pictures, each weighted by one over its uncertainty, (H, W, 3); where both are equal, just that."""
+    """Mean of two pictures, weighted by 1 / uncertainty, (H, W, 3); of two equal values, exactly this value."""
     total = one.uncertainty + other.uncertainty  # 0 where nothing was hit
     least = np.minimum(one.uncertainty, other.uncertainty)
     share = np.divide(least, total, out=np.full_like(total, 0.5), where=total > 0)[..., None]  # of the less certain

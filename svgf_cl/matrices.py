@@ -1,4 +1,4 @@
-"""Matrices of cameras: which are rigid, their inverses, and what those in the header of an OpenEXR file say."""
+"""Matrices of cameras: tests for rigid ones, their inverses, and the matrices in the header of an OpenEXR file."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def inverse(matrix: Array) -> Array:
 
 
 def projection_of(world_to_camera: npt.ArrayLike, world_to_ndc: npt.ArrayLike, shape: tuple[int, int]) -> Projection:
-    """Understand the matrices of a header as `svgf_cl.camera.Camera.from_matrices` says.
+    """Interpret the matrices of a header; see `svgf_cl.camera.Camera.from_matrices`.
 
     Raises
     ------

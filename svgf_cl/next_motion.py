@@ -1,4 +1,4 @@
-"""Motion to the next frame, which a backward run needs, from the motion to the previous one that renderers give.
+"""Motion to the next frame, which a backward run needs, computed from the renderer's motion to the previous frame.
 
 Equations: docs/algorithm.md, section 9.
 """
@@ -69,13 +69,13 @@ def check_on_host(frame: Frame) -> None:
     """Raise `FrameError` unless the fields are numpy arrays that fit together."""
     for name, value in frame.present().items():
         if not isinstance(value, np.ndarray):
-            raise FrameError(name, "a numpy.ndarray, as motion is turned round on the host", type(value).__name__)
+            raise FrameError(name, "a numpy.ndarray, because this is computed on the host", type(value).__name__)
     frame.check(frame.shape)
 
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """What a frame shows, as flat arrays of (H + 2) (W + 2) pixels: around the picture there is nothing.
+    """The surfaces of a frame, as flat arrays of (H + 2) (W + 2) pixels with an empty border.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ def known_depth(frame: Frame) -> Plane:
 
 
 def slope(depth: Plane) -> Plane:
-    """By how much depth changes to the next pixel in a row, plus the same in a column, (H, W).
+    """The change of depth to the next pixel in a row, plus that in a column, (H, W).
 
     Of both neighbours that of the more similar depth counts, which lies across no edge.
     """

@@ -1,4 +1,4 @@
-"""`Plan`: what a filter needs for frames with one set of fields, built once: kernels, memory, and launches."""
+"""`Plan`: kernels, memory and launches of a filter, built once for frames with one set of fields."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from svgf_cl.schedule import IN_PLACE, Schedule, ScheduledPass, whole_groups
 
 @dataclass(frozen=True)
 class Workplace:
-    """Where a plan's kernels run, and how their work is cut.
+    """Where the kernels of a plan run, and how their work is divided.
 
     Parameters
     ----------
@@ -110,14 +110,14 @@ class Plan:
         return done
 
     def set_scalars(self, pipeline: Pipeline) -> None:
-        """Take the numbers of a pipeline that is the same but for them."""
+        """Take the numbers of a pipeline that differs only in its numbers."""
         for turn in self._turns:
             for each, entry in zip(turn, pipeline.passes, strict=True):
                 each.set_scalars(entry)
         self.pipeline = pipeline
 
     def inherit(self, other: Plan) -> bool:
-        """Take over the past from a plan for the same place; False where what is kept of it is not the same."""
+        """Take over the history of a plan for the same place; return False if it is stored in another way."""
         mine, others = self.pipeline.lasting, other.pipeline.lasting
         if any(resource not in others and not resource.tells_unknown for resource in mine):
             return False
@@ -194,7 +194,7 @@ def launch(schedule: Schedule, scheduled: ScheduledPass, memory: Mapping[str, cl
 
 
 def fitting(work_group: Grid, kernel: cl.Kernel, device: cl.Device) -> Grid:
-    """A work-group cut to what a device can run of one kernel: fewer, where that takes many registers."""
+    """A work-group that is small enough for one kernel on a device; many registers allow fewer work-items."""
     most = kernel.get_work_group_info(cl.kernel_work_group_info.WORK_GROUP_SIZE, device)
     along = min(work_group[0], most)
     return along, min(work_group[1], most // along)

@@ -1,4 +1,4 @@
-"""`Prefilter`: takes the noise out of what guides the filter, before the light is filtered.
+"""`Prefilter`: removes noise from the guides of the filter before the light is filtered.
 
 The albedo of a rough mirror is that of whatever a sample reflected. Under depth of field, motion blur and fog, and
 where rays go through random places of their pixels, depth and the factors of light passes are noisy, too. Each of them
@@ -68,7 +68,7 @@ class Prefilter:
         return replace(frame, **better)
 
     def lights(self, frame: Frame, lights: Sequence[Light]) -> tuple[Light, ...]:
-        """The same lights with better factors; those that are seen directly become ones to be filtered."""
+        """The same lights with better factors; lights that are seen directly are then filtered, too."""
         if not self._filters_lights:
             return tuple(lights)
         factors: dict[tuple[str, ...], Array] = {}
@@ -87,7 +87,7 @@ class Prefilter:
         return filled
 
     def reset(self) -> None:
-        """Forget the past, as at a cut."""
+        """Discard the history, as at a cut."""
         self._denoisers.reset()
 
     def _filtered(self, name: str, frame: Frame, value: Array) -> Array:

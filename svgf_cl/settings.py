@@ -1,4 +1,4 @@
-"""How a setting is declared: default, what it may be, unit and reason; checks and help follow from that."""
+"""How a setting is declared: default, range, unit and reason; checks and help are derived from this."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ SettingsClass = TypeVar("SettingsClass", bound="type[SettingsBase]")
 
 
 class Domain(Protocol):
-    """What a setting may be."""
+    """The values that a setting may have."""
 
     def holds(self, value: object) -> bool:
         """Whether the setting may have this value."""
 
     def plain(self, value: Any) -> Value:
-        """A value that it may have, as a plain Python object."""
+        """An allowed value as a plain Python object."""
 
     def parse(self, text: str) -> Value:
         """The value that a text stands for, not yet checked; KeyError or ValueError where it is none."""
@@ -133,7 +133,7 @@ class SettingsBase:
 
 
 def domains(settings: type[SettingsBase]) -> dict[str, Domain]:
-    """What each setting of a class may be."""
+    """The domain of each setting of a class."""
     return {each.name: each.metadata[DOMAIN] for each in fields(settings)}
 
 

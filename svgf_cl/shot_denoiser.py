@@ -1,4 +1,4 @@
-"""`ShotDenoiser`: denoises the frames of a shot as its files have them, guides and light passes included."""
+"""`ShotDenoiser`: denoises the frames of a shot from its files, with guides and light passes."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class ShotDenoiser:
         self._is_settled = self._has_parts = self._lacks_motion = False
 
     def settle(self, frame: Frame, lights: Sequence[Light] = (), previous: Frame | None = None) -> None:
-        """Tell from a frame what holds for all of the shot: how guides are filtered, and whether lights are parts.
+        """Decide from a frame for the whole shot how guides are filtered, and whether lights are parts of the picture.
 
         By default that is the first frame that comes. With the frame before it, it tells whether motion is missing:
         then each frame is filtered alone. Other parameters are those of `denoise`.
@@ -128,7 +128,7 @@ class ShotDenoiser:
         self._method = replace(self._method, settings=settings)
 
     def reset(self) -> None:
-        """Forget the past, as at a cut."""
+        """Discard the history, as at a cut."""
         self._lights.reset()
         if self._prefilter:
             self._prefilter.reset()
@@ -154,7 +154,7 @@ def new_factors(before: Sequence[Light], after: Sequence[Light]) -> dict[Channel
 
 
 def is_sum(rest: Picture) -> bool:
-    """Whether passes are parts of a picture that has so much beyond them; a warning where they are not."""
+    """Whether the passes add up to at most the picture, given the rest of the picture; warns if not."""
     share = float((rest.min(axis=-1) < 0.0).mean())
     if share > STRAY:
         warnings.warn(

@@ -1,4 +1,4 @@
-"""`ShotWalk`: a shot's files, gone along in both directions, so that later frames help, too."""
+"""`ShotWalk`: a walk over a shot's files in both directions, so that pictures can use later frames."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class ShotWalk:
         return motion_to_next(item[1].frame, later[1].frame) if given is None else given
 
     def begin(self, *, backward: bool) -> None:
-        """Forget the past."""
+        """Discard the history."""
         (self._backward if backward else self.forward).reset()
 
     def estimates(self, item: Item, motion: Picture | None, *, backward: bool) -> Mapping[Channels, Estimate]:

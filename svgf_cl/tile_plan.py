@@ -1,4 +1,4 @@
-"""`TilePlan`: a filter's passes on one tile of the image after another, with the past of the whole image on the host.
+"""`TilePlan`: runs the passes of a filter tile by tile, and keeps the history of the whole image on the host.
 
 Each tile is a small image of its own on the device. What the next frame wants of it is copied to the host, and what the
 previous frame left is copied from there to where the tile's motion leads. Both are the same bits as in a whole frame:
@@ -116,7 +116,7 @@ class TilePlan:
         self._frame_number += 1
 
     def run(self, tile: Tile, motion: Motion, user: UserBuffers) -> Events:
-        """The passes on a tile of the frame that has begun.
+        """Run the passes on a tile of the current frame.
 
         Parameters
         ----------
@@ -232,7 +232,7 @@ class TilePlan:
         return values
 
     def _download(self, tile: Tile) -> None:
-        """Keep what lasts of a tile, and what is to be shown."""
+        """Copy the history and the visible stages of a tile to the host."""
         rows, columns = tile.around()
         size = rows.stop - rows.start, columns.stop - columns.start
         for planes in (self._now, self._results):

@@ -1,6 +1,6 @@
-"""Checks of what a renderer hands over: which of the usual mistakes are in some frames, told from the frames alone.
+"""Checks of a renderer's frames: they find common mistakes from the frames alone.
 
-`check_frame` and `check_sequence` ask every `Check` of `CHECKS` what each frame says; the sums over frames are judged.
+`check_frame` and `check_sequence` measure each frame with every `Check` of `CHECKS`, and judge the sums over frames.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from svgf_cl.frame import Frame
 
 __all__ = ["CHECKS", "Finding", "Report", "Unknown", "check_frame", "check_sequence"]
 
-# What others trust comes first.
+# Fields that other checks need are checked first.
 CHECKS = (
     values.FINITE,
     values.NEGATIVE,
@@ -43,14 +43,14 @@ CHECKS = (
 
 
 def check_frame(frame: Frame, previous: Frame | None = None) -> Report:
-    """Look for what is wrong with a frame, by itself and beside the one before it.
+    """Find mistakes in a frame, alone and compared with the previous one.
 
     Parameters
     ----------
     frame : Frame
         Of numpy or pyopencl arrays.
     previous : Frame, optional
-        The frame before; without it motion, and whatever is to stay the same over time, cannot be told.
+        The previous frame; without it, motion and everything that must stay the same over time are not checked.
 
     Returns
     -------
@@ -59,22 +59,22 @@ def check_frame(frame: Frame, previous: Frame | None = None) -> Report:
     Raises
     ------
     FrameError
-        A field is missing, or of another shape or type than the denoiser takes.
+        A field is missing, or has a shape or type that the denoiser does not accept.
 
     Notes
     -----
-    A few frames tell far more than two: see `check_sequence`.
+    Several frames show far more than two: see `check_sequence`.
     """
     return check_sequence([frame] if previous is None else [previous, frame])
 
 
 def check_sequence(frames: Iterable[Frame]) -> Report:
-    """Look for what is wrong with consecutive frames of a shot.
+    """Find mistakes in consecutive frames of a shot.
 
     Parameters
     ----------
     frames : iterable of Frame
-        In order, without a cut; two are held at a time. Eight of a moving camera are plenty.
+        In order, without a cut; two are in memory at a time. Eight frames of a moving camera are enough.
 
     Returns
     -------
@@ -83,7 +83,7 @@ def check_sequence(frames: Iterable[Frame]) -> Report:
     Raises
     ------
     FrameError
-        A field is missing, or of another shape or type than the denoiser takes.
+        A field is missing, or has a shape or type that the denoiser does not accept.
     """
     inspection = Inspection()
     for frame in frames:
@@ -92,7 +92,7 @@ def check_sequence(frames: Iterable[Frame]) -> Report:
 
 
 class Inspection:
-    """What all checks say of the frames of a shot, which come one after the other; two are held at a time."""
+    """All checks on the frames of a shot, which are added one by one; two are in memory at a time."""
 
     def __init__(self) -> None:
         self._sums: dict[Check, Array] = {}
@@ -100,7 +100,7 @@ class Inspection:
         self._run = self._longest = 0
 
     def add(self, frame: Frame) -> None:
-        """Look at the next frame; raise `FrameError` as `check_sequence`."""
+        """Measure the next frame; raises `FrameError` like `check_sequence`."""
         frame.check(self._views[-1].frame.shape if self._views else frame.shape)
         self._run += 1
         self._longest = max(self._longest, self._run)
@@ -112,16 +112,16 @@ class Inspection:
                     self._sums[check] = self._sums.get(check, 0) + told
 
     def cut(self) -> None:
-        """The next frame does not follow on the last one."""
+        """Say that there is a cut before the next frame."""
         self._views, self._run = [], 0
 
     def report(self) -> Report:
-        """What the frames so far say."""
+        """The report on the frames so far."""
         return judged(self._sums, self._longest)
 
 
 def judged(sums: dict[Check, Array], count: int) -> Report:
-    """What the sums over frames say, of which at most `count` came in a row."""
+    """The report from sums over frames, of which at most `count` were consecutive."""
     findings: list[Finding] = []
     unknown: list[Unknown] = []
     passed: list[str] = []

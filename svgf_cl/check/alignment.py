@@ -27,7 +27,7 @@ ENOUGH = 2e-3  # share of pixels on edges
 
 @lru_cache(maxsize=2)  # of a frame and the one before it
 def edges(view: View) -> dict[str, Array]:
-    """Where each field has edges, (h, w): 0 or 1."""
+    """The edges of each field, (h, w): 0 or 1."""
     if view.is_small:
         return {}
     found: dict[str, NDArray[np.generic]] = {
@@ -45,13 +45,13 @@ def edges(view: View) -> dict[str, Array]:
 
 
 def bend(values: Array) -> Array:
-    """How far each pixel (h, w) of (h, w, ...) is from the mean of the neighbours on both sides of it, at most."""
+    """The largest difference of each pixel (h, w) of (h, w, ...) from the mean of the neighbours on both sides."""
     both = [shifted(values, dx, dy) + shifted(values, -dx, -dy) - 2 * values for dx, dy in ((1, 0), (0, 1))]
     return over_channels(np.maximum, np.atleast_3d(np.maximum(*map(np.abs, both))))
 
 
 def correlations(first: dict[str, Array], second: dict[str, Array]) -> Array:
-    """Correlation of each field's edges in the first frame with those of the others in the second, (F); else 0."""
+    """Correlation of each field's edges in the first frame with those of the other fields in the second, (F), or 0."""
     found = np.zeros(len(FIELDS))
     for index, name in enumerate(FIELDS):
         others = [values for other, values in second.items() if other != name]
@@ -75,7 +75,7 @@ def displaced(before: View, now: View) -> Array:
 
 
 def judged(sums: Array, topic: str, why: str, mistakes: tuple[tuple[str, str], ...]) -> list[Finding | Unknown]:
-    """A mistake is there where a field's edges go clearly better with where it would put the others'."""
+    """Report a mistake if the edges of a field fit clearly better to those of the others after the correction."""
     findings: list[Finding | Unknown] = []
     alike = []
     for name, (frames, as_is, *others) in zip(FIELDS, sums.T, strict=True):
@@ -94,7 +94,7 @@ def judged(sums: Array, topic: str, why: str, mistakes: tuple[tuple[str, str], .
 
 
 def judge_mirrored(sums: Array) -> list[Finding | Unknown]:
-    """Fields that go with the others' mirror images are upside down."""
+    """Fields that fit to the mirror images of the others are upside down."""
     cure = "row 0 must be at the top of every field: flip the rows of fields from a graphics API's buffer"
     return judged(
         sums,
@@ -105,7 +105,7 @@ def judge_mirrored(sums: Array) -> list[Finding | Unknown]:
 
 
 def judge_displaced(sums: Array) -> list[Finding | Unknown]:
-    """Fields that go with the others of another frame are late or early."""
+    """Fields that fit to the others of another frame are late or early."""
     cure = "give fields of one frame; perhaps a buffer is read before it is written"
     mistakes = (
         ("of the previous frame, compared with the other fields", cure),

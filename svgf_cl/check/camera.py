@@ -44,12 +44,12 @@ class Path:
     matrix: Array
 
     def turn(self, focal: float) -> float:
-        """By about how much it turned, in radians, for a focal length in pixels."""
+        """The approximate rotation in radians, for a focal length in pixels."""
         a = self.matrix
         return float(focal * np.hypot(*a[2, :2]) + abs(a[0, 1] - a[1, 0]) / 2)
 
     def offset(self, focal: Array) -> Array:
-        """What is added to all motion alike, (n, 2) in pixels, for focal lengths (n) in pixels."""
+        """The offset of all motion, (n, 2) in pixels, for focal lengths (n) in pixels."""
         rows = self.matrix * np.stack([focal, focal, np.ones_like(focal)], axis=-1)[:, None]
         added: Array = (rows[:, :2] @ rows[:, 2, :, None])[..., 0] / (rows[:, 2:] ** 2).sum(axis=-1)
         return added
@@ -57,7 +57,7 @@ class Path:
 
 @lru_cache(maxsize=1)  # several checks want it of the same frame
 def path(view: View) -> Path | None:
-    """What motion says of the camera; None where most moves by itself, or where all is on one plane."""
+    """The movement of the camera from motion; None if most pixels move differently, or all are on one plane."""
     pixels = sample(view.hit, SAMPLES)
     if len(pixels) < ENOUGH:
         return None
@@ -106,7 +106,7 @@ def offsets(before: View, now: View) -> Array | None:
 
 
 def judge(sums: Array) -> list[Finding | Unknown]:
-    """Whatever the focal length, a camera's motion has no offset; that of jitter changes from frame to frame."""
+    """With any focal length, the motion of a camera has no offset; the offset of jitter changes in every frame."""
     frames, x, y, square = sums[:, np.argmin(sums[3])].tolist()
     length = np.sqrt(square / frames)
     if length < NOTICED:

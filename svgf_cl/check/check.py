@@ -1,4 +1,4 @@
-"""`Check`: one thing to be known of frames. What it measures adds up over frames; the sum is judged."""
+"""`Check`: one check of frames. It measures each frame, and judges the sum over frames."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from svgf_cl.check.view import Array, View
 
 @dataclass(frozen=True, eq=False)
 class Check:
-    """One idea of what may be wrong.
+    """One check for a kind of mistake.
 
     Parameters
     ----------
@@ -40,11 +40,11 @@ class Check:
     fields: tuple[str, ...] = ()
 
     def ask(self, views: Sequence[View]) -> Array | None:
-        """What the last of some frames in a row say."""
+        """The measurement of the last of some consecutive frames."""
         return self.measure(*views[-self.frames :]) if len(views) >= self.frames else None
 
     def verdict(self, total: Array | None, wrong: set[str], count: int) -> Sequence[Finding | Unknown]:
-        """Judge the sum over frames, at most `count` of them in a row, some fields being known to be wrong."""
+        """Judge the sum over frames, of which at most `count` are consecutive; fields in `wrong` have mistakes."""
         first = [name for name in self.trusts if name in wrong]
         if first:
             return [Unknown(self.topic, f"correct {first[0]} first")]
@@ -53,5 +53,5 @@ class Check:
         return [Unknown(self.topic, self.silence)] if total is None else self.judge(total)
 
     def looked_at(self, total: Array) -> tuple[str, ...]:
-        """Which of `fields` the sum over frames tells of."""
+        """The `fields` that the frames have."""
         return tuple(name for name, seen in zip(self.fields, total[0], strict=True) if seen)

@@ -1,4 +1,4 @@
-"""Depth: the distance along the camera's axis, told from other encodings by how planes look in them.
+"""Depth: finds encodings other than the distance along the camera's axis from the shape of planes.
 
 On a plane seen in perspective one over the distance along the axis is affine in x and y: of three pixels in a row, the
 middle one has the mean of both ends. Of three pixels with one normal this is tried with what was given, and with what
@@ -101,7 +101,7 @@ def origin(depth: Array) -> float:
 
 
 def judge(sums: Array) -> list[Finding | Unknown]:
-    """A mistake is there where it has many votes, and hardly any against it; with many either way nothing is known."""
+    """Report a mistake if it has many votes and hardly any against it; with many for and against, nothing is known."""
     wins, losses = sums
     *plain, last = (wins >= ENOUGH) & (wins > 4 * losses)
     best = int(np.argmax(np.where(plain, wins[:-1], 0))) if any(plain) else len(wins) - 1

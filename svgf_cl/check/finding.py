@@ -1,4 +1,4 @@
-"""What a check says: what is wrong, what could not be told, what is right."""
+"""Results of checks: mistakes, checks that were not possible, and checks that passed."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-# What svgf_cl takes each field for: docs/conventions.md in a line.
+# The meaning of each field in one line; docs/conventions.md has more.
 EXPECTED = {
     "color": "linear HDR radiance, noisy, without exposure or view transform",
     "normal": "world-space unit vectors, 0 where the ray hit nothing",
@@ -26,20 +26,20 @@ EXPECTED = {
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that is wrong with the frames.
+    """One mistake in the frames.
 
     Parameters
     ----------
     field : str
         Name of the field of `Frame`.
     what : str
-        What is wrong with it, always in the same words.
+        The mistake, always in the same words.
     measured : str
-        The figures that say so.
+        The figures that show it.
     cure : str
         What to do.
     severity : {"error", "warning"}
-        An error spoils the picture. A warning costs quality, or is none if it is meant so.
+        An error spoils the picture. A warning means lower quality, unless the input is meant to be like this.
     """
 
     field: str
@@ -50,7 +50,7 @@ class Finding:
 
     @property
     def expected(self) -> str:
-        """What svgf_cl takes the field for."""
+        """The meaning of the field."""
         return EXPECTED[self.field]
 
     def __str__(self) -> str:
@@ -59,12 +59,12 @@ class Finding:
 
 @dataclass(frozen=True)
 class Unknown:
-    """Something that these frames cannot tell.
+    """A check that these frames do not allow.
 
     Parameters
     ----------
     topic : str
-        What would have been checked.
+        The check.
     why : str
         What the frames lack.
     """
@@ -78,18 +78,18 @@ class Unknown:
 
 @dataclass(frozen=True)
 class Report:
-    """All that was found out about some frames.
+    """The results of all checks on some frames.
 
     Parameters
     ----------
     findings : tuple of Finding
-        What is wrong; the first is the one to mend first.
+        The mistakes; correct the first one first.
     unknown : tuple of Unknown
-        What could not be told. It is not passed.
+        Checks that were not possible. They have not passed.
     passed : tuple of str
-        What was looked at and is right.
+        Checks that passed.
     looked_at : dict of str to tuple of str
-        Of what looks at one field after the other, which fields were there for it.
+        For checks of several fields: the fields that the frames have.
     """
 
     findings: tuple[Finding, ...]
@@ -99,5 +99,5 @@ class Report:
 
 
 def percent(part: float, whole: float) -> str:
-    """Write a share of pixels as people do: ``"3.21 % of the pixels"``."""
+    """Write a share of pixels for people: ``"3.21 % of the pixels"``."""
     return f"{100 * part / max(whole, 1):.3g} % of the pixels"

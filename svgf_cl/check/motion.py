@@ -1,4 +1,4 @@
-"""Motion: of the usual ways to get it wrong, the one with whose cure surfaces are found again in the frame before.
+"""Motion: finds the usual mistake whose correction makes motion lead to the same surfaces in the previous frame.
 
 What is looked for is what stays on surfaces: normal, albedo, and the steps of depth. How much it differs, over how much
 it changes from pixel to pixel, is an error in pixels. The sub-pixel jitter of both frames displaces everything alike,
@@ -33,7 +33,7 @@ TILES = 8  # along each side of the picture, that may move by themselves
 
 @dataclass(frozen=True)
 class Mistake:
-    """A way to get motion wrong, and what undoes it.
+    """A mistake in motion, and its correction.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class Mistake:
     swapped: bool = False
 
     def undone(self, motion: Array, size: Shape) -> Array:
-        """The motion (N, 2) that was meant, in an image of that (height, width)."""
+        """The corrected motion (N, 2) in an image of this (height, width)."""
         straight = motion[:, ::-1] if self.swapped else motion
         meant: Array = straight * self.scale * ((size[1], size[0]) if self.per_pixel else (1, 1))
         return meant
@@ -103,7 +103,7 @@ def misfits(before: View, now: View) -> Array | None:
 
 @lru_cache(maxsize=2)  # of a frame and the one before it
 def features(view: View) -> Array:
-    """What stays on surfaces, (h, w, C): normal, albedo, steps of depth; blurred, so as to be smooth between pixels."""
+    """Features that stay on surfaces, (h, w, C): normal, albedo, depth edges; blurred to be smooth between pixels."""
     log_depth = -np.log(np.where(view.hit, view.nearness, np.max(view.nearness, initial=1e-30)))
     steps = np.clip(log_depth - blurred(blurred(log_depth)), -1, 1)
     fields = [np.clip(view.normal, -1, 1), steps[..., None]]
@@ -158,7 +158,7 @@ def bilinear(values: Array, x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def judge(sums: Array) -> list[Finding | Unknown]:
-    """A cure that fits clearly better names the mistake; one that fits as well cannot be told from what was given."""
+    """A correction that fits clearly better shows the mistake; one that fits equally well cannot be excluded."""
     moves, change, *differences = sums.tolist()
     anywhere, given, *cures, local = np.array(differences) / max(change, 1e-12)
     cured = np.array(cures)

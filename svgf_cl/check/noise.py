@@ -34,7 +34,7 @@ def has_noisy_depth(frame: Frame) -> bool:
 
 
 def lacks_motion(frame: Frame, previous: Frame) -> bool:
-    """Whether motion is 0 in all of a frame, though surfaces are not where they were in the previous one.
+    """Whether motion is 0 in the whole frame, but surfaces are in other places than in the previous frame.
 
     So it is in frames of Blender with motion blur. Surfaces are told by their albedo, or by their normals.
     """

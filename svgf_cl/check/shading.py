@@ -1,4 +1,4 @@
-"""Colour is proportional to albedo, and contains emission; one that was encoded for a display does neither.
+"""Colour is proportional to albedo and contains emission; if it was encoded for a display, neither is true.
 
 Neighbours of one direction get the same light, and their colours are as their albedos. In spite of noise that holds in
 the mean: of two colours, each divided by its own albedo, (a - b) / (a + b) is 0 on average. The same is tried with
@@ -38,14 +38,14 @@ PAIRS, ROUNDED, FEW = (("direct", "indirect"), ("diffuse", "specular")), 0.01, 0
 
 
 def srgb_decoded(values: Array) -> Array:
-    """Light of what is shown, by the curve of IEC 61966-2-1."""
+    """Linear light of a displayed value, by the curve of IEC 61966-2-1."""
     positive = np.maximum(values, 0)
     return np.where(positive <= 0.04045, positive / 12.92, ((positive + 0.055) / 1.055) ** 2.4)
 
 
 @dataclass(frozen=True)
 class Mistake:
-    """A way in which colour does not go with albedo, and what undoes it.
+    """A mistake in colour or albedo, and its correction.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def neighbors(view: View, color: Array) -> tuple[Array, Array, Whole]:
 
 
 def judge_curve(sums: Array) -> list[Finding | Unknown]:
-    """The one cure with which colour goes with albedo."""
+    """Find the one correction with which colour follows albedo."""
     cells = (sums[:, 0] >= ENOUGH).all(axis=0)
     if np.count_nonzero(cells) < VARIED:
         return [Unknown(CURVE.topic, "albedo hardly changes across surfaces")]
@@ -204,7 +204,7 @@ def unequal(view: View) -> Array | None:
 
 
 def judge_parts(sums: Array) -> list[Finding]:
-    """Light that is split in two is there in whole."""
+    """The parts of split light add up to all light."""
     return [
         Finding(
             a,

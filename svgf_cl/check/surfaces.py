@@ -60,7 +60,7 @@ def names(before: View, now: View) -> Array | None:
 
 
 def judge_names(sums: Array) -> list[Finding | Unknown]:
-    """Objects that keep together and yet change id were renamed."""
+    """Objects that stay together but change their id were renumbered."""
     found, kept, together = sums
     if found < ENOUGH:
         return [Unknown(NAMES.topic, "too few surfaces are visible in the previous frame, too")]
@@ -101,7 +101,7 @@ def rotation_between(normal: Array, past: Array) -> Array:
 
 
 def judge_turns(sums: Array) -> list[Finding | Unknown]:
-    """Where most normals turn together, it is the camera that turns."""
+    """If most normals turn together, it is the camera that turns."""
     found, kept, alike, turned = sums
     if alike > 0.6 * found:
         measured = f"they turn together from frame to frame in {percent(alike, found)} on planes"
@@ -129,7 +129,7 @@ def deeper(before: View, now: View) -> Array | None:
 
 
 def judge_deeper(sums: Array) -> list[Finding | Unknown]:
-    """The right reading is nearest to what became of depth."""
+    """The right interpretation is nearest to the actual change of depth."""
     found, there, lost, refused, none, given, negated, absolute = sums
     if not there:
         if lost < 0.5 * found:

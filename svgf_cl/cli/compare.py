@@ -195,7 +195,7 @@ def refuse_rendering(options: Mapping[str, object]) -> None:
     """Raise `SvgfError` where an option of rendering was given though nothing is rendered."""
     for name, value in options.items():
         if value:
-            raise SvgfError(f"{name}: expected only scenes to render, got pictures or frames too")
+            raise SvgfError(f"{name}: expected scenes to render, got finished pictures or frames")
 
 
 def of_pictures(inputs: Sequence[str], filters: str | None) -> Footage:
@@ -205,7 +205,7 @@ def of_pictures(inputs: Sequence[str], filters: str | None) -> Footage:
     if len(inputs) != 2:
         raise SvgfError(
             f"expected two pictures or folders, the second being the reference of the first, got {len(inputs)}; "
-            "frames to be filtered want --reference"
+            "to filter frames, add --reference"
         )
     if filters is not None:
         raise SvgfError("--filters: expected scenes, or frames with --reference, got finished pictures")

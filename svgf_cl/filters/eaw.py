@@ -17,7 +17,7 @@ from svgf_cl.settings import documented, number
 class Eaw(WaveletFilter):
     """Parameters of edge-avoiding a-trous wavelets (Dammertz et al. 2010). Equations: docs/algorithm.md.
 
-    The levels filter accumulated noisy light, and tell an edge in it by one tolerance for the whole picture. SVGF
+    The levels filter accumulated noisy light, and use one tolerance for edges in it for the whole picture. SVGF
     (`Settings`) estimates that tolerance for each pixel. For comparison, and for scenes of even light.
     """
 
@@ -27,10 +27,10 @@ class Eaw(WaveletFilter):
         4.0,
         (1e-6, 1e6),
         unit="radiance",
-        reason="Tolerated difference in demodulated light at the first level, the same for every pixel; each further "
-        "level tolerates half as much. No value suits every scene: 0.5 is best in an evenly lit box (PSNR 30.6 dB), 32 "
-        "under caustics (30.6 dB). 4 is 1.1 and 3.3 dB worse there, and keeps the box's shadows about as sharp as SVGF "
-        "does; set it to suit the scene's light. Figures: docs/results.md.",
+        reason="Tolerated difference of light (divided by albedo) at the first level, the same for every pixel; each "
+        "further level tolerates half as much. No value suits every scene: 0.5 is best in an evenly lit box "
+        "(PSNR 30.6 dB), and 32 under caustics (30.6 dB). 4 is 1.1 and 3.3 dB worse there, and keeps the "
+        "box's shadows about as sharp as SVGF; adapt it to the light of your scene. Figures: docs/results.md.",
     )
 
     def pipeline(self, inputs: Inputs) -> Pipeline:

@@ -30,9 +30,9 @@ STEPS = (1, 2, 4)  # of these, between the taps of the passes after the first
 class Kalman(WaveletFilter):
     """Parameters of the Kalman filter. Equations: docs/algorithm.md.
 
-    Light accumulates unfiltered, with the gain that its own uncertainty asks for. A test over neighbourhoods of growing
+    Light accumulates unfiltered, with a gain that depends on its uncertainty. A test over neighbourhoods of growing
     size finds where the light has changed; there the history is corrected and trusted less. The a-trous levels filter
-    what is shown, and know the variance of a mean in place of that of a sample.
+    only the picture that is shown, and use the variance of a mean instead of that of a sample.
     """
 
     name: ClassVar[str] = "kalman"
@@ -41,51 +41,53 @@ class Kalman(WaveletFilter):
         0.05,
         (0.0, 1.0),
         unit="share of a frame",
-        reason="Least share of the new frame in the accumulated light. 0.05, where SVGF has 0.2: a change of light is "
-        "found by a test, so the history need not be short to follow it. From 0.02 to 0.1 it hardly matters.",
+        reason="Smallest share of the new frame in the accumulated light. 0.05, not 0.2 as in SVGF: a test finds "
+        "changes of light, so the history need not be short to follow them. From 0.02 to 0.1 it hardly "
+        "matters.",
     )
     iterations: int = number(
         4,
         (1, 5),
         unit="levels",
-        reason="A-trous levels; each doubles the filter's reach. 4: what is filtered is a mean over many frames, and a "
-        "fifth level, for a tenth more time, gains nothing.",
+        reason="Number of a-trous levels; each doubles the filter's reach. 4: they filter a mean over many frames, "
+        "and a fifth level takes a tenth more time and gains nothing.",
     )
     sigma_depth: float = number(
         2.0,
         (1e-3, 1e3),
         unit="slopes of the surface",
-        reason="Tolerated depth difference in units of the surface's own slope. 2: curved surfaces keep their "
-        "neighbours; within a factor of two it hardly matters.",
+        reason="Tolerated depth difference, in units of the surface's own slope. 2: pixels of curved surfaces keep "
+        "their neighbours; within a factor of two it hardly matters.",
     )
     sigma_normal: float = number(
         32.0,
         (8, 1024),
         unit="1 / (1 - cosine)",
-        reason="How sharply normals are told apart: the weight falls to 1/e at a cosine of 1 - 1/sigma_normal. 32 (14 "
-        "degrees): light is told apart so well that the bumps of one surface need not count as other surfaces.",
+        reason="How strictly normals are compared: the weight falls to 1/e at a cosine of 1 - 1/sigma_normal. 32 (14 "
+        "degrees): the weight for light is so good that bumps of one surface need not be treated as different "
+        "surfaces.",
     )
     sigma_luminance: float = number(
         4.5,
         (1e-3, 1e3),
         unit="standard deviations",
-        reason="Tolerated luminance difference, in units of the estimated noise of the mean. 4.5: less leaves noise, "
-        "more blurs shadows; from 3 to 5 the picture is within 0.2 dB.",
+        reason="Tolerated luminance difference, in units of the estimated noise of the mean. 4.5: a smaller value "
+        "leaves noise, a larger one blurs shadows; from 3 to 5 the picture is within 0.2 dB.",
     )
     change_threshold: float = number(
         2.65,
         (0.0, 1e3),
         unit="standard deviations",
-        reason="How far the new frame must lie off the history to count as a change of light. Less follows moving "
-        "shadows sooner, more is steadier under noise with fireflies: at 2.65 the filter is as steady as SVGF there. "
-        "At 1000 changes are found only in light without any noise.",
+        reason="How much the new frame must differ from the history to count as a change of light. A smaller value "
+        "follows moving shadows sooner, a larger one is steadier with fireflies: at 2.65 the filter is as "
+        "steady there as SVGF. At 1000, changes are found only in light without any noise.",
     )
     change_sigma_depth: float = number(
         4.0,
         (1e-3, 1e3),
         unit="slopes of the surface",
-        reason="As sigma_depth, for the test and for smoothing the guidance. 4: a change of light does not stop where "
-        "a surface bends, and a test over more pixels finds smaller changes.",
+        reason="As sigma_depth, for the test and for smoothing the guidance. 4: a change of light does not stop "
+        "where a surface bends, and a test over more pixels finds smaller changes.",
     )
     change_sigma_normal: float = number(
         8.0,
@@ -96,8 +98,9 @@ class Kalman(WaveletFilter):
 
     standard_error: bool = switch(
         False,
-        reason="Also make the stage standard_error, an estimate of the standard error of each pixel's luminance before "
-        "antialiasing; 0 where nothing was hit, as that light is passed on with its noise. Off: it is another pass.",
+        reason="Also make the stage standard_error, an estimate of the standard error of each pixel's luminance "
+        "before antialiasing. It is 0 where the ray hit nothing, because that light is not filtered. Off, "
+        "because it is another pass.",
     )
 
     @property

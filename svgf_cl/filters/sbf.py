@@ -35,13 +35,13 @@ class Sbf(BilateralFilter):
         4.0,
         (1e-2, 1e3),
         unit="deviations",
-        reason="Tolerated difference of depth, in units of its own deviation within a pixel.",
+        reason="Tolerated difference of depth, in units of its standard deviation within a pixel.",
     )
     gamma_normal: float = number(
         2.0,
         (1e-2, 1e3),
         unit="deviations",
-        reason="Tolerated difference of normals, in units of their own deviation within a pixel.",
+        reason="Tolerated difference of normals, in units of their standard deviation within a pixel.",
     )
 
     def pipeline(self, inputs: Inputs) -> Pipeline:

@@ -22,29 +22,29 @@ class SpatialFilter(TemporalFilter):
         1.0,
         (1e-3, 1e3),
         unit="slopes of the surface",
-        reason="Tolerated depth difference in units of the surface's own slope. 1 as in SVGF's paper (section 4.4).",
+        reason="Tolerated depth difference, in units of the surface's own slope. 1 as in SVGF's paper (section 4.4).",
     )
     sigma_normal: float = number(
         128.0,
         (16, 1024),
         unit="1 / (1 - cosine)",
-        reason="How sharply normals are told apart: the weight falls to 1/e at a cosine of 1 - 1/sigma_normal. 128, 7 "
-        "degrees: for such angles the same as SVGF's cosine to the power of 128.",
+        reason="How strictly normals are compared: the weight falls to 1/e at a cosine of 1 - 1/sigma_normal. 128 (7 "
+        "degrees): for such angles the same as SVGF's cosine to the power of 128.",
     )
     depth_slope_floor: float = number(
         1e-3,
         (1e-6, 1.0),
         unit="depth per depth and pixel",
-        reason="Least slope that still counts as one surface. 1e-3 bridges rounding and the faint relief of a wall "
-        "that faces the camera, and is far below the step to anything behind it.",
+        reason="Smallest slope that still counts as one surface. 1e-3 tolerates rounding and the slight relief of a "
+        "wall that faces the camera, and is far below the step to anything behind it.",
     )
     precision: str = choice(
         "precise",
         "fast",
-        reason="Weights between pixels: exponentials to 4e-6, or with straight lines between the powers of two, up to "
-        "6 % larger. Fast takes a sixth less time and looks the same, to 0.07 dB; yet single pixels are off "
-        "the exact filter by up to a tenth of the picture's mean. Precise, so that a picture is the same to "
-        "1e-6 wherever it is made.",
+        reason="Exponentials of the weights between pixels: precise to 4e-6, or linear between the powers of two, "
+        "which makes them up to 6 % larger. Fast takes a sixth less time and looks the same, to 0.07 dB, but "
+        "single pixels differ from the exact filter by up to a tenth of the picture's mean. The default is "
+        "precise, so that a picture is the same to 1e-6 on every device.",
     )
 
     @property

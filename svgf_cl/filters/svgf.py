@@ -29,7 +29,7 @@ class Settings(WaveletFilter):
         0.2,
         (0.0, 1.0),
         unit="share of a frame",
-        reason="Least share of the new frame in the moments of luminance. 0.2 as in the paper (section 4.1).",
+        reason="Smallest share of the new frame in the moments of luminance. 0.2 as in the paper (section 4.1).",
     )
 
     def pipeline(self, inputs: Inputs) -> Pipeline:

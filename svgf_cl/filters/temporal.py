@@ -33,61 +33,62 @@ class TemporalFilter(Filter):
         0.2,
         (0.0, 1.0),
         unit="share of a frame",
-        reason="Least share of the new frame in the accumulated colour. 0.2 as in SVGF's paper (section 4.1). Less is "
-        "steadier and lags more. SVGF feeds colour back filtered, so that detail in the light itself (not in "
-        "the albedo) softens with every frame it is kept: 0 is no way to converge on a still picture.",
+        reason="Smallest share of the new frame in the accumulated colour. 0.2 as in SVGF's paper (section 4.1). A "
+        "smaller value is steadier and lags more. SVGF's history is filtered again in every frame, which "
+        "blurs detail of the light (but not of the albedo), so even at 0 a still picture does not converge.",
     )
     depth_threshold: float = number(
         0.02,
         (0.0, 1.0),
         unit="relative to depth",
-        reason="Reprojection: how far a tap may lie off the expected depth, beside one pixel of the surface's slope. "
-        "0.02 forgives curvature between the frames' sample positions and still tells objects a hand apart "
-        "across a room.",
+        reason="Reprojection: how much the depth of a tap may differ from the expected depth, in addition to one "
+        "pixel of the surface's slope. 0.02 tolerates curvature between the samples of two frames, and still "
+        "distinguishes objects a hand's width apart across a room.",
     )
     normal_threshold: float = number(
         0.9,
         (-1.0, 1.0),
         unit="cosine",
-        reason="Reprojection: least cosine between the normals of pixel and tap. 0.9, 26 degrees, as much as a small "
-        "ball's surface turns within a pixel or two.",
+        reason="Reprojection: smallest cosine between the normals of pixel and tap. 0.9 (26 degrees): the surface of "
+        "a small ball turns this much within a pixel or two.",
     )
     albedo_threshold: float = number(
         1.75,
         (0.0, 8.0),
         unit="octaves",
-        reason="Light is mixed only between pixels whose albedos differ by at most so many factors of two, in every "
-        "channel. Light that albedo does not hold, such as a reflection on black paint, is far too bright or too dark "
-        "once it is multiplied by another albedo. 1.75, a factor of 3.4: under a coat tiles of any albedos come out "
-        "better than they came in, and most textures keep their neighbours. At 8 albedo does not count, as in the "
-        "papers.",
+        reason="Light is mixed only between pixels whose albedos differ by at most this many factors of two in every "
+        "channel. Light that is not multiplied by albedo, such as a reflection on black paint, would become "
+        "far too bright or too dark with another albedo. 1.75 (a factor of 3.4): tiles of any albedos under a "
+        "coat have less error in the result than in the input, and most textures keep their neighbours. At 8, "
+        "albedo has no effect, as in the papers.",
     )
     taa: bool = switch(False, reason="Temporal antialiasing after the filter; off, as a renderer often has its own.")
     alpha_taa: float = number(
         0.2,
         (0.0, 1.0),
         unit="share of a frame",
-        reason="Share of the new frame in the antialiased picture, a mean of radiance. 0.2: on the moving demo 0.8 dB "
-        "better than the usual 0.1, for each resampling of the history softens it; less suits a still camera.",
+        reason="Share of the new frame in the antialiased picture, a mean of radiance. 0.2 is 0.8 dB better than the "
+        "usual 0.1 on the moving demo, because each resampling of the history blurs it; with a still camera, "
+        "a smaller value is better.",
     )
     pixel_filter: float = number(
         0.0,
         (0.0, 0.25),
         unit="share of a pixel",
-        reason="How much of each of its two neighbours in a row, and in a column, a pixel takes of the new frame in "
-        "antialiasing; needs taa. 0: a pixel is the mean over its own square. Above 0 it imitates the pixel filter "
-        "of a renderer, for frames that were not filtered yet: 0.15 is close to Blender's default.",
+        reason="Share that a pixel takes from each of its two neighbours in a row, and in a column, of the new frame "
+        "in antialiasing; needs taa. At 0, a pixel is the mean over its own square. Above 0 it imitates the "
+        "pixel filter of a renderer, for frames without such a filter: 0.15 is close to Blender's default.",
     )
     half_guides: bool = switch(
         False,
-        reason="Keep normals as 16-bit whole numbers: 6 of the guide's 16 bytes less a pixel, an error of 2^-16. Off: "
-        "no faster on a CPU, where the time saved on memory is spent on converting.",
+        reason="Store normals as 16-bit integers: saves 6 of the guide's 16 bytes a pixel, with an error of 2^-16. "
+        "Off, because on a CPU it is no faster: conversions take the time that less memory saves.",
     )
     half_history: bool = switch(
         False,
-        reason="Keep illumination, its history and its moments as 16-bit floats: half their memory, an error of "
-        "2^-12, of light that stands still up to 2^-11 / alpha_color (or 2^-6: an alpha below 1/32 counts as "
-        "that), and illumination that saturates at 65504. Off: no faster on a CPU.",
+        reason="Store illumination, its history and its moments as 16-bit floats: half the memory, an error of "
+        "2^-12, and in still light up to 2^-11 / alpha_color (at most 2^-6, because an alpha below 1/32 is "
+        "treated as 1/32). Illumination is limited to 65504. Off, because on a CPU it is no faster.",
     )
 
     def __post_init__(self) -> None:

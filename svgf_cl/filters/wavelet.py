@@ -26,15 +26,15 @@ class WaveletFilter(SpatialFilter):
         5,
         (1, 5),
         unit="levels",
-        reason="A-trous levels; each doubles the filter's reach. 5 as in the paper: taps up to 62 pixels away, enough "
-        "for 1 spp.",
+        reason="Number of a-trous levels; each doubles the filter's reach. 5 as in the paper: taps up to 62 pixels "
+        "away, enough for 1 spp.",
     )
     taps: str = choice(
         "3x3",
         "5x5",
-        reason="Of an a-trous level: the linear spline, or the papers' cubic B-spline, which sees three times as many "
-        "neighbours. 3x3: over five levels it takes 0.6 of the time and blurs less, 0.8 to 1.3 dB better in an "
-        "evenly lit box and as good in Sponza, where it leaves 7 % more flicker (SVGF).",
+        reason="Taps of an a-trous level: the linear spline, or the papers' cubic B-spline, which has three times as "
+        "many neighbours. 3x3: over five levels it takes 0.6 of the time and blurs less. It is 0.8 to 1.3 dB "
+        "better in an evenly lit box, and as good in Sponza, where it leaves 7 % more flicker (SVGF).",
     )
 
     @property

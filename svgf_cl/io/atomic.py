@@ -1,4 +1,4 @@
-"""Files that are written whole or not at all, the folders they lie in, and what can be wrong with either."""
+"""Files that are written completely or not at all, their folders, and errors of both."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def check_new(path: Path) -> Path:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text, whole or not at all; what is no text, as names of files may be, as Python would show it.
+    """Write a text, completely or not at all; names of files that are not text are escaped as in Python.
 
     Raises
     ------
@@ -237,7 +237,7 @@ def _delete_leftovers(folder: Path) -> None:
 
 
 def _is_running(process: int) -> bool:
-    """Whether there is a process of that number; where that cannot be asked for, there may be."""
+    """Whether there is a process with this number; True if the system does not say."""
     if os.name != "posix":
         return True
     try:

@@ -1,4 +1,4 @@
-"""Where svgf_cl keeps what it has learnt about this machine, and what it does where nothing can be kept."""
+"""The cache folder of svgf_cl, and what happens if it cannot be written."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def is_usable(folder: Path) -> bool:
 
 
 def tell() -> None:
-    """Warn, once in a process, where something cannot be kept: which folder, what that costs, and what helps."""
+    """Warn once in a process that a folder cannot be written: which folder, what that costs, and what helps."""
     if _problems and not _told:
         _told.append(_problems[0])
         warnings.warn(
@@ -74,7 +74,7 @@ def tell() -> None:
 
 @contextmanager
 def keeping() -> Iterator[None]:
-    """Around what is written to a cache: where that fails, it is said as `tell` says it, and is no error."""
+    """A context for writing to a cache: if that fails, `tell` warns, and there is no error."""
     try:
         yield
     except (OSError, FileError) as error:

@@ -1,4 +1,4 @@
-"""Depth and motion that files do not hold, computed from what they hold and from cameras."""
+"""Depth and motion that files lack, computed from their other fields and from cameras."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""OpenEXR files: written whole or not at all; read not trusting their claims."""
+"""OpenEXR files: written completely or not at all, and read without trusting their claims."""
 
 from __future__ import annotations
 
@@ -229,7 +229,7 @@ def _checked(path: Path) -> tuple[list[Attributes], list[Layout]]:
 
 
 def _check_claims(layouts: Sequence[Layout], held: int) -> None:
-    """Raise `ValueError` where a file of `held` bytes claims more than it can hold, or a picture that no memory can."""
+    """Raise `ValueError` if a file of `held` bytes claims more pixels than it, or the memory, can hold."""
     claimed = sum(layout.size for layout in layouts)
     if claimed > max(TRUSTED, MAX_RATIO * held):
         raise ValueError(f"expected a complete image, got {claimed} bytes of pixels in a file of {held}")

@@ -1,4 +1,4 @@
-"""The header of an OpenEXR file as bytes: the library writes pixels, what else a file says passes through as it is.
+"""The header of an OpenEXR file as bytes: the library writes pixels, and attributes are copied unchanged.
 
 The library knows the types of attributes, takes some for orders, and wants every text in UTF-8; a file may have others.
 

@@ -1,4 +1,4 @@
-"""What the header of an OpenEXR file says of how its pixels lie: windows, channels and their types, compression, view.
+"""The layout of the pixels, from the header of an OpenEXR file: windows, channels and types, compression, view.
 
 Source: https://openexr.com/en/latest/OpenEXRFileLayout.html
 """

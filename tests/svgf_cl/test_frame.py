@@ -42,7 +42,7 @@ def test_half_a_pair_is_refused(name: str) -> None:
 
 
 def test_some_light_is_needed() -> None:
-    refused(only(FRAME, ()), "color", "an array (or direct and indirect in its place)", "nothing")
+    refused(only(FRAME, ()), "color", "an array (or direct and indirect instead)", "nothing")
 
 
 @pytest.mark.parametrize("name", CHANNELS)

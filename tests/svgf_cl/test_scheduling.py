@@ -82,7 +82,7 @@ def test_a_task_that_kills_every_worker_is_given_up() -> None:
         dask.config.set({"distributed.scheduler.allowed-failures": 1}),
         local_cluster(1) as cluster,
         scheduled(cluster.scheduler_address, version) as run,
-        pytest.raises(SchedulerError, match="workers die of a task"),
+        pytest.raises(SchedulerError, match="workers die while they work on a task"),
     ):
         next(run(end_worker, "shared", range(3)))
 

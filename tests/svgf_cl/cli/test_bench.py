@@ -110,8 +110,8 @@ def test_without_a_gate_nothing_stops(before: Path, now) -> None:
 
 
 def test_a_gate_without_what_it_needs_is_refused(before: Path, now, tmp_path: Path, refused) -> None:
-    refused("--fail-above: expected --compare OLD.json beside it", "bench", "--fail-above", "1.1")
-    refused("--junit: expected --fail-above RATIO beside it", "bench", "--compare", before, "--junit", "a.xml")
+    refused("--fail-above: expected --compare OLD.json too", "bench", "--fail-above", "1.1")
+    refused("--junit: expected --fail-above RATIO too", "bench", "--compare", before, "--junit", "a.xml")
     for ratio in ("0", "-1", "nan", "inf"):
         refused("'--fail-above': expected a ratio > 0", "bench", "--compare", before, f"--fail-above={ratio}")
     now(1.0, row="temporal")

@@ -138,7 +138,7 @@ def test_denoise_never_replaces_its_input(rendered: Path, tmp_path: Path, refuse
 
 @pytest.mark.parametrize(
     ("text", "words"),
-    [("sigma=1", "a name out of alpha_color,"), ("iterations=9", "in 1..5"), ("taa=maybe", "expected on or off"),
+    [("sigma=1", "a name among alpha_color,"), ("iterations=9", "in 1..5"), ("taa=maybe", "expected on or off"),
      ("sigma_depth=wide", "expected a number in"), ("iterations=2.5", "expected a whole number in 1..5")],
 )  # fmt: skip
 def test_a_bad_setting(text: str, words: str, rendered: Path, tmp_path: Path, refused) -> None:
@@ -156,7 +156,7 @@ def test_another_filter(rendered: Path, tmp_path: Path) -> None:
 
 def test_a_filter_that_is_none(rendered: Path, tmp_path: Path, refused) -> None:
     refused("or sbf or lbf or accumulation, got 'nlm'", "denoise", rendered, "-o", tmp_path, "--filter", "nlm")
-    refused("a name out of", "denoise", rendered, "-o", tmp_path, "--filter", "eaw", "--set", "sigma_luminance=1")
+    refused("a name among", "denoise", rendered, "-o", tmp_path, "--filter", "eaw", "--set", "sigma_luminance=1")
 
 
 def test_all_but_the_light_passes_through(rendered: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -20,7 +20,7 @@ def test_settings_are_read_by_their_own_type() -> None:
 
 def test_each_filter_has_its_own() -> None:
     assert parse_settings("eaw", ["sigma_color=3"]) == Eaw(sigma_color=3.0)
-    with pytest.raises(SettingsError, match=r"out of .*sigma_color .filter eaw., got 'sigma_luminance=4'"):
+    with pytest.raises(SettingsError, match=r"among .*sigma_color .filter eaw., got 'sigma_luminance=4'"):
         parse_settings("eaw", ["sigma_luminance=4"])
 
 

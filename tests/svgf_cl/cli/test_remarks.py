@@ -110,7 +110,7 @@ def test_a_mistake_is_a_warning_and_no_check_keeps_quiet(
     folder = written(tmp_path / "in", changed(room, "normal", lambda normal: 0.5 * normal + 0.5))
     _, err = said(capsys, folder, "-o", tmp_path / "out")
     assert "svgf-cl: warning: normal: encoded in 0..1; give 2 n - 1, and 0 where the ray hit nothing\n" in err
-    assert "--no-check leaves it out" in err
+    assert "--no-check turns them off" in err
     assert "Traceback" not in err
     assert said(capsys, folder, "-o", tmp_path / "out", "--no-check")[1] == ""
 
@@ -160,7 +160,7 @@ def test_a_shot_of_nothing_but_sky_is_said(
     tmp_path: Path, room: list[Frame], capsys: pytest.CaptureFixture[str]
 ) -> None:
     sky = changed(changed(room, "depth", lambda depth: depth + np.inf), "normal", np.zeros_like)
-    assert "depth: nothing was hit" in said(capsys, written(tmp_path / "in", sky), "-o", tmp_path / "out")[1]
+    assert "depth: the rays hit nothing" in said(capsys, written(tmp_path / "in", sky), "-o", tmp_path / "out")[1]
 
 
 def test_the_next_frame_s_motion_in_the_third_component_is_said(
@@ -168,7 +168,7 @@ def test_the_next_frame_s_motion_in_the_third_component_is_said(
 ) -> None:
     vectors = changed(room, "motion", lambda motion: np.stack([motion[..., 0], motion[..., 1], 9 - motion[..., 0]], -1))
     err = said(capsys, written(tmp_path / "in", vectors), "-o", tmp_path / "out")[1]
-    assert "motion: third component is not the change of depth; give previous minus current depth, or two" in err
+    assert "motion: third component is not the change of depth; give previous minus current depth, or only two" in err
 
 
 def test_motion_that_motion_blur_left_out_is_said(
@@ -178,10 +178,17 @@ def test_motion_that_motion_blur_left_out_is_said(
     still = changed(room, "motion", np.zeros_like)
     lost = [replace(frame, albedo=np.roll(tiles, 4 * number, axis=1).astype(np.float32))
             for number, frame in enumerate(still)]  # fmt: skip
-    assert "turn motion blur off" in said(capsys, written(tmp_path / "in", lost), "-o", tmp_path / "out")[1]
-    assert "turn motion blur off" not in said(capsys, written(tmp_path / "in2", room), "-o", tmp_path / "out2")[1]
     assert (
-        "turn motion blur off" not in said(capsys, written(tmp_path / "in3", still[:1] * 4), "-o", tmp_path / "out3")[1]
+        "with motion blur, renderers write no motion"
+        in said(capsys, written(tmp_path / "in", lost), "-o", tmp_path / "out")[1]
+    )
+    assert (
+        "with motion blur, renderers write no motion"
+        not in said(capsys, written(tmp_path / "in2", room), "-o", tmp_path / "out2")[1]
+    )
+    assert (
+        "with motion blur, renderers write no motion"
+        not in said(capsys, written(tmp_path / "in3", still[:1] * 4), "-o", tmp_path / "out3")[1]
     )
 
 

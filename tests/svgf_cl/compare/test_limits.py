@@ -81,7 +81,7 @@ def test_what_is_no_figure_of_one_frame_is_held_to_its_limit_once() -> None:
 @pytest.mark.parametrize(
     ("text", "complaint"),
     [
-        ("sharpness=1", "a measure out of psnr, ssim, .*, got 'sharpness=1'"),
+        ("sharpness=1", "a measure among psnr, ssim, .*, got 'sharpness=1'"),
         ("psnr=30, ssim=1", "got ' ssim=1'"),
         ("psnr", "psnr: expected a number, got ''"),
         ("psnr=high", "psnr: expected a number, got 'high'"),

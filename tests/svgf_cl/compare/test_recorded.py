@@ -114,7 +114,7 @@ def test_a_reference_without_its_frame_is_refused(shot: Path) -> None:
 
 def test_a_shot_that_lacks_a_frame_is_refused(shot: Path) -> None:
     (shot / "frame.0008.exr").unlink()
-    with pytest.raises(FileError, match=r"frame\.0009\.exr: expected the frame before it"):
+    with pytest.raises(FileError, match=r"frame\.0009\.exr: expected the previous frame"):
         open_frames([shot], shot, jitter=False)
 
 

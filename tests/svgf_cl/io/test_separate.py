@@ -89,7 +89,7 @@ def test_a_frame_without_its_file_is_named(tmp_path: Path) -> None:
     (tmp_path / "z" / "z.0002.exr").unlink()
     folder = without_depth(tmp_path / "shot")
     separate = {"albedo": one_each(tmp_path / "a", "a.", "albedo", 3), "depth": pattern}
-    with pytest.raises(FileError, match=r"z\.0001\.exr: expected a file of depth for frame 2 beside it, found none"):
+    with pytest.raises(FileError, match=r"z\.0001\.exr: expected a file of depth for frame 2, found none"):
         open_sequence(folder, separate=separate)
 
 

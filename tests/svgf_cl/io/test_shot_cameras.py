@@ -53,5 +53,5 @@ def test_pixels_count_from_the_data_window(paths: list[Path]) -> None:
 
 def test_cameras_of_another_size_are_refused(paths: list[Path], tmp_path: Path) -> None:
     cameras = ShotCameras(paths, cameras_file(tmp_path, NUMBERS, (9, 9)), DISPLAY)
-    with pytest.raises(FileError, match="expected width 32 and height 20"):
+    with pytest.raises(FileError, match="expected the width 32 and height 20"):
         cameras.at(1, DISPLAY)
