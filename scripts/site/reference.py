@@ -6,8 +6,8 @@ import inspect
 import re
 from collections.abc import Iterator
 from dataclasses import fields
+from typing import Any
 
-import click
 import typer
 
 import svgf_cl
@@ -15,6 +15,8 @@ from svgf_cl.cli import application
 from svgf_cl.filters import DEFAULT, FILTERS
 from svgf_cl.filters.filter import Filter
 from svgf_cl.settings import DOMAIN, REASON, UNIT
+
+Command = Any  # click's, or that of the copy of click that newer versions of typer have
 
 # Every name that `import svgf_cl` offers, by what it is for.
 TOPICS = {
@@ -73,28 +75,28 @@ def settings_of(kind: type[Filter]) -> str:
     items = []
     for each in fields(kind):
         values = ", ".join(part for part in (str(each.metadata[DOMAIN]), each.metadata[UNIT]) if part)
-        items.append(f"- **`{each.name}`** `= {each.default!r}`, {values}.\n  {each.metadata[REASON]}\n")
+        items.append(f"- **`{each.name}`** `= {each.default!r}`, {values}.\\\n  {each.metadata[REASON]}\n")
     return f"\n## {kind.__name__}\n{summary} `--filter {kind.name}`\n\n{''.join(items)}"
 
 
 def command_line() -> str:
     """The page of ``svgf-cl``'s commands, from their declarations; Markdown."""
     group = typer.main.get_group(application())
-    top = click.Context(group, info_name="svgf-cl")
+    top = typer.Context(group, info_name="svgf-cl")
     introduction = f"# Command line\n\n{group.help}\n\n{group.epilog}\n"
     return introduction + "".join(command(each, top) for each in group.commands.values())
 
 
-def command(each: click.Command, top: click.Context) -> str:
+def command(each: Command, top: typer.Context) -> str:
     """One command: how it is called, what it does, and a row for each argument and option."""
-    context = click.Context(each, info_name=each.name, parent=top)
+    context = typer.Context(each, info_name=each.name, parent=top)
     usage = " ".join(each.get_usage(context).removeprefix("Usage: ").split())
     rows = [f"| `{names}` | {cell(meaning)} |" for names, meaning in options(each, context)]
     table = ["", "| option | meaning |", "|---|---|", *rows] if rows else []
     return "\n".join([f"\n## {each.name}\n```text\n{usage}\n```\n", prose(each.help or ""), *table]) + "\n"
 
 
-def options(each: click.Command, context: click.Context) -> Iterator[tuple[str, str]]:
+def options(each: Command, context: typer.Context) -> Iterator[tuple[str, str]]:
     """The names and the meaning of each argument and option, as `--help` lists them."""
     for parameter in each.params:
         if record := parameter.get_help_record(context):
