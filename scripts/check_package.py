@@ -82,8 +82,9 @@ def check_use(wheel: Path, python: str) -> None:
     (example,) = re.findall(r"^```python\n(.*?)^```", (ROOT / "README.md").read_text(), re.DOTALL | re.MULTILINE)
     with tempfile.TemporaryDirectory() as folder:
         bin_folder = Path(folder) / "env" / "bin"
-        run(python, "-m", "venv", bin_folder.parent)
-        run(bin_folder / "pip", "install", "--quiet", "--disable-pip-version-check", wheel)
+        run(python, "-m", "venv", "--without-pip", bin_folder.parent)
+        pip = (sys.executable, "-m", "pip", "--python", bin_folder / "python", "--disable-pip-version-check")
+        run(*pip, "install", "--quiet", "--no-compile", wheel)
         run(bin_folder / "python", "-c", example, cwd=folder)
         run(bin_folder / "svgf-cl", "--version", cwd=folder)
         refused = subprocess.run(
