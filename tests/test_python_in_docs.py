@@ -1,4 +1,4 @@
-"""Every block of Python in the pages runs as it stands there, given what its page speaks of. README's: test_readme.py."""
+"""Every block of Python in the pages runs, given what its page speaks of. README has a test of its own."""
 
 from __future__ import annotations
 
