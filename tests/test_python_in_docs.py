@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import svgf_cl_tracer.api  # noqa: F401  # before the fixtures move the cache, which has its loops compiled
 from svgf_cl.filters import signals
 from svgf_cl.io.synthetic import room_frames
 from tests.pages import PAGES, ROOT, blocks, name_of
