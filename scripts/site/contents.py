@@ -18,6 +18,7 @@ OUTSIDE = {
 
 # The navigation: pages by title of their section. A page that is in none fails the build, and so does one that is gone.
 SECTIONS = {
+    "Start": ("installation.md",),
     "Use from Python": ("api.rst", "settings.md", "examples.md"),
     "Use on frames of your renderer": (
         "command_line.md",
