@@ -47,11 +47,11 @@ docs: demo implementations  ## make docs/accuracy.md, docs/scene_description.md,
 	$(BIN)/svgf-cl scenes -o docs/builtin_scenes.webp --size 320x180 --spp 128
 
 site: $(READY)  ## build the documentation site in out/site; any warning fails
-	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	$(BIN)/pip install --quiet --disable-pip-version-check 'svgf-cl[docs]'
 	$(BIN)/python -m scripts.site
 
 package: $(READY)  ## build the wheel and the source archive in out/package, and check that they are whole and work
-	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[release]'
+	$(BIN)/pip install --quiet --disable-pip-version-check 'svgf-cl[release]'
 	$(BIN)/python -m scripts.check_package -o out/package
 
 clean:  ## remove what the other targets made
