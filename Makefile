@@ -50,7 +50,7 @@ site: $(READY)  ## build the documentation site in out/site; any warning fails
 	$(BIN)/pip install --quiet --disable-pip-version-check 'svgf-cl[docs]'
 	$(BIN)/python -m scripts.site
 
-package: $(READY)  ## build the wheel and the source archive in out/package, and check that they are whole and work
+package: device  ## build the wheel and the source archive in out/package, and check that they are whole and work
 	$(BIN)/pip install --quiet --disable-pip-version-check 'svgf-cl[release]'
 	$(BIN)/python -m scripts.check_package -o out/package
 
