@@ -5,7 +5,7 @@ BIN := .venv/bin
 READY := .venv/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all lint gpu-static bench gpu docs clean device implementations gpu-compilers
+.PHONY: help demo test test-all lint gpu-static bench gpu docs site package clean device implementations gpu-compilers
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1	/p' $(MAKEFILE_LIST) | expand -t 12
@@ -46,6 +46,14 @@ docs: demo implementations  ## make docs/accuracy.md, docs/scene_description.md,
 	$(BIN)/python scripts/pass_table.py
 	$(BIN)/python -m benchmarks.gpu.roofline docs/gpu.md
 	$(BIN)/svgf-cl scenes -o docs/builtin_scenes.webp --size 320x180 --spp 128
+
+site: $(READY)  ## build the documentation site in out/site; any warning fails
+	$(BIN)/pip install --quiet --disable-pip-version-check 'svgf-cl[docs]'
+	$(BIN)/python -m scripts.site
+
+package: device  ## build the wheel and the source archive in out/package, and check that they are whole and work
+	$(BIN)/pip install --quiet --disable-pip-version-check 'svgf-cl[release]'
+	$(BIN)/python -m scripts.check_package -o out/package
 
 clean:  ## remove what the other targets made
 	rm -rf .venv build *.egg-info .*_cache

@@ -41,4 +41,4 @@ __all__ = [
     "motion_to_next",
     "open_sequence",
 ]
-__version__ = "0.1.0"
+__version__ = "0.2.0"

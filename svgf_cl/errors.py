@@ -44,6 +44,11 @@ class SchedulerError(SvgfError):
     """No Dask scheduler answers, it has no worker, or its workers cannot do the work."""
 
 
+def install_extra(extra: str) -> str:
+    """The command that installs what an optional part of svgf_cl needs, for a message; it works in any environment."""
+    return f"pip install 'svgf-cl[{extra}]'"
+
+
 def one_line(message: object) -> str:
     """`message` without its line breaks, because our errors are one line."""
     return " ".join(str(message).split())

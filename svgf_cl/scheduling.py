@@ -17,7 +17,7 @@ from functools import partial
 from itertools import islice
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from svgf_cl.errors import SchedulerError, one_line
+from svgf_cl.errors import SchedulerError, install_extra, one_line
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -158,9 +158,7 @@ def _connected(address: str) -> Iterator[Client]:
     try:
         import distributed
     except ModuleNotFoundError as error:
-        raise SchedulerError(
-            f"--scheduler needs Dask ({error}): pip install '.[dask]' in a clone of svgf_cl"
-        ) from error
+        raise SchedulerError(f"--scheduler needs Dask ({error}): {install_extra('dask')}") from error
     # A client that cannot connect would not let the process end for a while: ask before there is one.
     _check(asyncio.run(_identity(address)), address)
     with distributed.Client(address, timeout=PATIENCE, set_as_default=False) as client:

@@ -22,8 +22,7 @@ from svgf_cl.view import clip, player
 from svgf_cl_tracer import panorama
 from svgf_cl_tracer.description import document
 from svgf_cl_tracer.gltf import model, nodes
-
-ROOT = Path(__file__).parents[1]
+from tests.pages import PAGES, ROOT, blocks, name_of, without_code
 
 
 def written(value: float) -> str:
@@ -84,7 +83,7 @@ def test_a_page_without_marks_is_refused() -> None:
 def examples(page: str, section: str, language: str) -> list[str]:
     """The blocks of code in a section of a page."""
     text = (ROOT / "docs" / page).read_text().split(f"\n## {section}\n")[1].split("\n## ")[0]
-    return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
+    return blocks(text, language)
 
 
 def test_the_lines_on_motion_from_cameras_compute_it() -> None:
@@ -111,13 +110,9 @@ def test_the_file_of_cameras_in_the_page_is_one(tmp_path: Path) -> None:
     ]
 
 
-PAGES = [ROOT / "README.md", *sorted(ROOT.glob("examples/*.md")), *sorted(ROOT.glob("docs/**/*.md"))]
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_links_lead_somewhere(page: Path) -> None:
-    text = re.sub(r"```.*?```|`[^`\n]*`", "", page.read_text(), flags=re.DOTALL)
-    for target in re.findall(r"\]\(([^)\s]+)\)", text):
+    for target in re.findall(r"\]\(([^)\s]+)\)", without_code(page.read_text())):
         if "://" in target:
             continue
         name, _, anchor = target.partition("#")

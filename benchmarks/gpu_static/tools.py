@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields
 from pathlib import Path
 
-from svgf_cl.errors import SvgfError
+from svgf_cl.errors import SvgfError, install_extra
 
 CLANGS = range(19, 30)  # 19 is the first whose OpenCL is right for all these targets
 SPIRV_CLANGS = range(15, 30)  # each writes SPIR-V by the llvm-spirv of its own version
@@ -96,7 +96,7 @@ def rocm_folder() -> Path | None:
     return found.parent if found else None
 
 
-EXTRA = "pip install '.[gpu-static]' in a clone of svgf_cl"
+EXTRA = install_extra("gpu-static")
 WANTED: dict[str, Wanted] = {
     "clang": Wanted(lambda: program(f"clang-{number}" for number in CLANGS), "clang 19 or later", "clang-19"),
     "libclc": Wanted(lambda: under(LIBCLC_FOLDERS, "nvptx64--nvidiacl.bc"), "libclc for NVIDIA", "libclc-15"),

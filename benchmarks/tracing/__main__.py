@@ -10,7 +10,7 @@ import typer
 from benchmarks.command import run as run_command
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import Earlier, Size, parse_size
-from svgf_cl.errors import SvgfError
+from svgf_cl.errors import SvgfError, install_extra
 from svgf_cl.io.atomic import output_folder
 from svgf_cl_tracer.cli.render import SCENE_HELP
 from svgf_cl_tracer.cli.scenes import require_tracer
@@ -44,7 +44,7 @@ def tracing(
         from svgf_cl.bench import compare
         from svgf_cl.bench.results import Run
     except ModuleNotFoundError as error:
-        raise SvgfError(f"bench needs more ({error}): pip install '.[bench]' in a clone of svgf_cl") from error
+        raise SvgfError(f"bench needs more ({error}): {install_extra('bench')}") from error
     shape = parse_size(size)
     earlier = Run.read(old) if old else None
     folder = output_folder(output) if output else None

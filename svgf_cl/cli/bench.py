@@ -12,7 +12,7 @@ import typer
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import STDOUT, Earlier, FilterName, SettingTexts, check_files, parse_settings, parse_size
 from svgf_cl.cli.verdict import leave_with
-from svgf_cl.errors import SvgfError
+from svgf_cl.errors import SvgfError, install_extra
 from svgf_cl.filters import DEFAULT
 from svgf_cl.io.atomic import output_folder
 
@@ -86,7 +86,7 @@ def bench(
         from svgf_cl.bench.results import Run
         from svgf_cl.bench.suite import Suite
     except ModuleNotFoundError as error:
-        raise SvgfError(f"bench needs more ({error}): pip install '.[bench]' in a clone of svgf_cl") from error
+        raise SvgfError(f"bench needs more ({error}): {install_extra('bench')}") from error
     check_gate(old, fail_above, junit)
     shapes = [parse_size(text) for text in size] or SHAPES
     suite = Suite(parse_pattern(only), parse_settings(filter_, set_), shapes, seconds, ceilings)

@@ -16,7 +16,7 @@ from svgf_cl import __version__
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import STDOUT, Exposure, check_files, parse_measured_size, parse_settings
 from svgf_cl.cli.verdict import leave_with
-from svgf_cl.errors import SvgfError
+from svgf_cl.errors import SvgfError, install_extra
 from svgf_cl.io.atomic import output_folder, require, write_text
 
 if TYPE_CHECKING:
@@ -167,7 +167,7 @@ def needs_packages() -> None:
     try:
         import jinja2  # noqa: F401
     except ModuleNotFoundError as error:
-        raise SvgfError(f"compare needs more ({error}): pip install '.[metrics]' in a clone of svgf_cl") from error
+        raise SvgfError(f"compare needs more ({error}): {install_extra('metrics')}") from error
     if missing := why_no_flip():
         typer.echo(f"FLIP is not measured: {missing}", err=True)
 

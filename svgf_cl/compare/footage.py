@@ -8,11 +8,11 @@ from importlib.metadata import entry_points
 from typing import Protocol
 
 from svgf_cl.compare.halves import Pair
-from svgf_cl.errors import SvgfError
+from svgf_cl.errors import SvgfError, install_extra
 from svgf_cl.frame import Frame, Shape
 
 GROUP = "svgf_cl.footage"  # entry points of packages that render scenes; each is an `Opener`
-NEEDED, HINT = "comparing on scenes needs the tracer", "pip install '.[tracer]' in a clone of svgf_cl"
+NEEDED, HINT = "comparing on scenes needs the tracer", install_extra("tracer")
 
 
 class Footage(Protocol):

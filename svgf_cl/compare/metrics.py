@@ -26,7 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from svgf_cl.errors import SvgfError
+from svgf_cl.errors import SvgfError, install_extra
 from svgf_cl.io.display import Linear, display
 
 # Least extent of a picture that scikit-image's Gaussian window of sigma 1.5 fits in.
@@ -87,7 +87,7 @@ def require_ssim() -> None:
     try:
         import skimage.metrics  # noqa: F401
     except ModuleNotFoundError as error:
-        raise SvgfError(f"SSIM needs scikit-image ({error}): pip install '.[metrics]' in a clone of svgf_cl") from error
+        raise SvgfError(f"SSIM needs scikit-image ({error}): {install_extra('metrics')}") from error
 
 
 def flip(shown: Linear, wanted: Linear) -> float:
@@ -128,9 +128,7 @@ def require_flip() -> None:
     try:
         import flip_evaluator  # noqa: F401
     except ModuleNotFoundError as error:
-        raise SvgfError(
-            f"FLIP needs flip-evaluator ({error}): pip install '.[metrics]' in a clone of svgf_cl"
-        ) from error
+        raise SvgfError(f"FLIP needs flip-evaluator ({error}): {install_extra('metrics')}") from error
 
 
 def temporal_error(shown: tuple[Linear, Linear], wanted: tuple[Linear, Linear]) -> float:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 import pyopencl as cl
 
 from svgf_cl import Frame
-from svgf_cl.errors import SvgfError
+from svgf_cl.errors import SvgfError, install_extra
 from svgf_cl.frame import Shape
 
 QUALITIES = ("high", "balanced", "fast")
@@ -114,4 +114,4 @@ def require_oidn() -> None:
         import psutil  # noqa: F401
         import pyoidn  # noqa: F401
     except ModuleNotFoundError as error:
-        raise SvgfError(f"Open Image Denoise is missing ({error}): pip install '.[oidn]' in a clone") from error
+        raise SvgfError(f"Open Image Denoise is missing ({error}): {install_extra('oidn')}") from error

@@ -16,7 +16,7 @@ import pyopencl as cl
 from svgf_cl.device import apart, driver_caches, icd_files, probe, registration
 from svgf_cl.device.drivers import INTEL
 from svgf_cl.device.process import check_process
-from svgf_cl.errors import DeviceError
+from svgf_cl.errors import DeviceError, install_extra
 from svgf_cl.io import cache
 
 # Here, as `import svgf_cl` comes by: a loader looks once, when anyone in this process first lists the platforms.
@@ -38,7 +38,7 @@ SIMULATOR = "Oclgrind"
 # How to get one, by words that name it where it is there already.
 INSTALLATION = {
     ("pocl", POCL.lower()): "Debian, Ubuntu:       apt-get install pocl-opencl-icd",
-    ("intel",): "x86-64 Linux, no root: pip install '.[cpu]' in a clone of svgf_cl",
+    ("intel",): f"x86-64 Linux, no root: {install_extra('cpu')}",
     ("gpu",): "a GPU:                its vendor's driver with OpenCL",
 }
 

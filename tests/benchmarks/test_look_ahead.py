@@ -24,7 +24,7 @@ def run(monkeypatch: pytest.MonkeyPatch, *argv: str | Path) -> int:
 
 
 def test_it_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
+    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install 'svgf-cl[oidn]'")
     pytest.importorskip("flip_evaluator")
     monkeypatch.setattr(look_ahead, "AHEAD", (1,))
     options = ["--size", "32x18", "--frames", "3", "--spp", "32", "--markdown", "-o", tmp_path]
@@ -38,7 +38,7 @@ def test_it_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[
 
 
 def test_a_scene_that_is_not_there(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
+    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install 'svgf-cl[oidn]'")
     assert run(monkeypatch, "nowhere") == 2
     assert capsys.readouterr().err.startswith("look_ahead: ")
 

@@ -60,7 +60,7 @@ def test_errors_are_of_the_judged_frames(queue: cl.CommandQueue) -> None:
 
 
 def test_it_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
+    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install 'svgf-cl[oidn]'")
     target = tmp_path / "versus.json"
     pytest.importorskip("flip_evaluator")
     monkeypatch.setattr(versus_oidn, "AREA", FOOTAGE)

@@ -147,4 +147,4 @@ def test_an_address_without_a_scheduler(address: str, monkeypatch: pytest.Monkey
 
 def test_dask_is_asked_for_where_it_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    refused("tcp://127.0.0.1:1", r"pip install '.\[dask\]'")
+    refused("tcp://127.0.0.1:1", r"pip install 'svgf-cl\[dask\]'")

@@ -21,7 +21,7 @@ def test_everything_missing_is_named_at_once(monkeypatch: pytest.MonkeyPatch) ->
     assert len(lines) == 2 + len(tools.WANTED)
     for package in ("clang-19", "clang-15", "llvm-spirv-15", "spirv-tools", "rocm-device-libs", "libclc-15"):
         assert any(line.endswith(f"apt-get install {package}") for line in lines)
-    assert sum("pip install '.[gpu-static]'" in line for line in lines) == 2
+    assert sum("pip install 'svgf-cl[gpu-static]'" in line for line in lines) == 2
 
 
 def test_as_a_program_it_ends_with_exit_code_1(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -74,6 +74,6 @@ def test_without_an_extra_it_says_what_to_install(monkeypatch: pytest.MonkeyPatc
     for module in ("suite", "fresh"):
         monkeypatch.delitem(sys.modules, f"benchmarks.tracing.{module}", raising=False)
         monkeypatch.delattr(f"benchmarks.tracing.{module}", raising=False)
-    refused("pip install '.[bench]'")
+    refused("pip install 'svgf-cl[bench]'")
     monkeypatch.setitem(sys.modules, "svgf_cl_tracer.api", None)
-    refused("pip install '.[tracer]'")
+    refused("pip install 'svgf-cl[tracer]'")

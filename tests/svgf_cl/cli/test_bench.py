@@ -48,7 +48,7 @@ def test_bench_without_its_extra_says_what_to_install(monkeypatch: pytest.Monkey
     monkeypatch.setitem(sys.modules, "jinja2", None)
     monkeypatch.delitem(sys.modules, "svgf_cl.bench.report", raising=False)
     monkeypatch.delattr("svgf_cl.bench.report", raising=False)
-    refused("pip install '.[bench]'", "bench")
+    refused("pip install 'svgf-cl[bench]'", "bench")
 
 
 def test_a_size_that_no_memory_holds(refused) -> None:

@@ -140,7 +140,7 @@ def test_filters_are_compared_on_frames_with_references(rendered: Path, tmp_path
 
 
 def test_frames_may_have_two_signals_and_no_colour(frames: Path, tmp_path: Path) -> None:
-    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
+    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install 'svgf-cl[oidn]'")
     for name in NAMES:
         write_frame(frames / name, replace(read_frame(frames / name), color=None))
     found = tmp_path / "found.json"
@@ -230,7 +230,7 @@ def test_wrong_options_beside_frames(
     words: str, options: list[str], rendered: Path, refused, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(contest, "compete", lambda *_: pytest.fail("begun"))
-    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
+    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install 'svgf-cl[oidn]'")
     refused(words, "compare", rendered, "--reference", rendered, *options)
 
 
@@ -293,7 +293,7 @@ def test_without_a_package_it_is_said_how_to_get_it(
     for module in [name for name in sys.modules if name.partition(".")[0] == missing]:
         monkeypatch.setitem(sys.modules, module, None)
     monkeypatch.setitem(sys.modules, missing, None)
-    refused("pip install '.[metrics]'", "compare", rendered, rendered)
+    refused("pip install 'svgf-cl[metrics]'", "compare", rendered, rendered)
 
 
 def test_without_flip_all_else_is_measured(
@@ -303,6 +303,6 @@ def test_without_flip_all_else_is_measured(
     assert run("compare", rendered, rendered) == 0
     said = capsys.readouterr()
     assert "FLIP is not measured: " in said.err
-    assert "pip install '.[metrics]'" in said.err
+    assert "pip install 'svgf-cl[metrics]'" in said.err
     assert "FLIP" not in said.out
     assert "PSNR" in said.out

@@ -27,5 +27,5 @@ def test_without_one_that_works_it_is_said_what_to_install(
     values: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     declare(monkeypatch, *values)
-    with pytest.raises(SvgfError, match=r"needs the tracer.*pip install '\.\[tracer\]'"):
+    with pytest.raises(SvgfError, match=r"needs the tracer.*pip install 'svgf-cl\[tracer\]'"):
         opener()

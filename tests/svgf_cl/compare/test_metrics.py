@@ -82,7 +82,7 @@ def test_flip_of_nan_is_nan() -> None:
 
 def test_without_its_library_flip_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "flip_evaluator", None)
-    with pytest.raises(SvgfError, match=r"pip install '\.\[metrics\]'"):
+    with pytest.raises(SvgfError, match=r"pip install 'svgf-cl\[metrics\]'"):
         metrics.flip(grey(0.5), grey(0.5))
 
 

@@ -23,13 +23,13 @@ def frame() -> Frame:
 
 def test_what_to_install_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pyoidn", None)
-    with pytest.raises(SvgfError, match=r"pip install '\.\[oidn\]'"):
+    with pytest.raises(SvgfError, match=r"pip install 'svgf-cl\[oidn\]'"):
         require_oidn()
 
 
 @pytest.mark.parametrize("quality", QUALITIES)
 def test_noise_goes_and_light_stays(frame: Frame, quality: str) -> None:
-    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
+    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install 'svgf-cl[oidn]'")
     rival = OidnFilter(SHAPE, quality, threads=1)
     clean = rival.denoise(frame)
     light = 0.5 * frame.albedo  # what the room's noise averages to
@@ -39,7 +39,7 @@ def test_noise_goes_and_light_stays(frame: Frame, quality: str) -> None:
 
 
 def test_errors_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
+    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install 'svgf-cl[oidn]'")
     monkeypatch.setattr(oidn, "INPUTS", ("albedo", "normal"))  # no filter without a color
     with pytest.raises(SvgfError, match="Open Image Denoise: "):
         OidnFilter(SHAPE, "fast", threads=1)
@@ -47,7 +47,7 @@ def test_errors_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_memory_is_that_of_the_network() -> None:
     """Its activations outweigh the images. In a process of its own: here it might get memory that others gave back."""
-    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
+    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install 'svgf-cl[oidn]'")
     script = "from svgf_cl.compare.oidn import OidnFilter; print(OidnFilter((360, 640), 'fast', threads=1).nbytes)"
     nbytes = int(subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout)
     assert 100 < nbytes / (640 * 360) < 2000

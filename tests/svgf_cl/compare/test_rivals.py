@@ -72,7 +72,7 @@ def test_without_open_image_denoise_it_is_left_out_and_who_asks_for_it_is_told(
 ) -> None:
     monkeypatch.setitem(sys.modules, "pyoidn", None)
     assert usual_rivals() == ",".join(FILTERS)
-    with pytest.raises(SvgfError, match=r"pip install '\.\[oidn\]'"):
+    with pytest.raises(SvgfError, match=r"pip install 'svgf-cl\[oidn\]'"):
         parsed("svgf,oidn+accumulation")
 
 
@@ -135,7 +135,7 @@ def test_accumulated_pictures_are_those_of_open_image_denoise(signals: int, monk
 
 
 def test_an_infinite_pixel_spoils_no_other() -> None:
-    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
+    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install 'svgf-cl[oidn]'")
     (frame,) = room_frames(SHAPE, 1)
     color = frame.color.copy()
     color[5, 6] = np.inf
@@ -146,7 +146,7 @@ def test_an_infinite_pixel_spoils_no_other() -> None:
 
 @pytest.mark.parametrize("name", [OIDN, OIDN_ACCUMULATED])
 def test_open_image_denoise_takes_part_where_it_is_installed(name: str) -> None:
-    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install '.[oidn]'")
+    pytest.importorskip("pyoidn", reason="pyoidn is not installed: pip install 'svgf-cl[oidn]'")
     (maker,) = makers(parsed(name), SHAPE, jitter=True).values()
     (frame,) = room_frames(SHAPE, 1)
     picture = maker.denoise(frame)

@@ -97,4 +97,4 @@ def test_without_the_tracer_it_is_said_how_to_get_it(
     module: str, tmp_path: Path, refused, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, module, None)
-    refused("pip install '.[tracer]'", "compare", "swing", "--filters", "eaw", "-o", tmp_path)
+    refused("pip install 'svgf-cl[tracer]'", "compare", "swing", "--filters", "eaw", "-o", tmp_path)

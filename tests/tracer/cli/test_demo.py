@@ -51,11 +51,11 @@ def test_an_output_that_cannot_be_written(tmp_path: Path, refused) -> None:
 
 def test_rendering_without_the_tracer_says_how_to_get_it(tmp_path: Path, refused, monkeypatch) -> None:
     monkeypatch.setitem(sys.modules, "svgf_cl_tracer.api", None)
-    refused("pip install '.[tracer]'", "demo", "-o", tmp_path)
+    refused("pip install 'svgf-cl[tracer]'", "demo", "-o", tmp_path)
 
 
 def test_measuring_without_scikit_image_says_how_to_get_it(tmp_path: Path, refused, monkeypatch) -> None:
     for module in ("skimage", "skimage.metrics"):
         monkeypatch.setitem(sys.modules, module, None)
-    refused("pip install '.[metrics]'", "demo", "-o", tmp_path / "demo")
+    refused("pip install 'svgf-cl[metrics]'", "demo", "-o", tmp_path / "demo")
     assert not (tmp_path / "demo").exists(), "refused before the long work, not after it"

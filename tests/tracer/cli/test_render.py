@@ -153,7 +153,7 @@ def test_an_output_that_cannot_be_written(tmp_path: Path, refused) -> None:
 
 def test_rendering_without_the_tracer_says_how_to_get_it(tmp_path: Path, refused, monkeypatch) -> None:
     monkeypatch.setitem(sys.modules, "svgf_cl_tracer.api", None)
-    refused("pip install '.[tracer]'", "render", "cornell", "-o", tmp_path)
+    refused("pip install 'svgf-cl[tracer]'", "render", "cornell", "-o", tmp_path)
 
 
 def test_a_builtin_scene_comes_with_the_frames_that_show_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -6,7 +6,7 @@ import signal
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from svgf_cl.errors import SvgfError
+from svgf_cl.errors import SvgfError, install_extra
 
 if TYPE_CHECKING:
     from svgf_cl_tracer import Environment, Scene
@@ -22,9 +22,7 @@ def require_tracer(remarks: TextIO | None = None) -> None:
     try:
         import svgf_cl_tracer.api  # noqa: F401
     except ModuleNotFoundError as error:
-        raise SvgfError(
-            f"rendering needs the tracer ({error}): pip install '.[tracer]' in a clone of svgf_cl"
-        ) from error
+        raise SvgfError(f"rendering needs the tracer ({error}): {install_extra('tracer')}") from error
     finally:
         signal.signal(signal.SIGINT, interrupt)
     from svgf_cl_tracer.compiled import IS_KEPT, was_compiled
