@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from svgf_cl.errors import SvgfError
+from svgf_cl.errors import SvgfError, install_extra
 
 if TYPE_CHECKING:
     from pcpp import Preprocessor
@@ -52,7 +52,7 @@ def _preprocessor() -> Preprocessor:
     try:
         from pcpp import Preprocessor
     except ImportError as error:
-        raise SvgfError(f"export needs pcpp ({error}): pip install '.[export]' in a clone of svgf_cl") from error
+        raise SvgfError(f"export needs pcpp ({error}): {install_extra('export')}") from error
 
     class Strict(Preprocessor):  # type: ignore[misc]  # pcpp has no types
         def on_error(self, file: str, line: int, message: str) -> None:

@@ -171,7 +171,7 @@ def test_a_run_leaves_its_input_as_it_was(sources: list[Path], tmp_path: Path) -
 
 
 def test_no_standard_error_of_pictures_from_later_frames(sources: list[Path], tmp_path: Path) -> None:
-    with pytest.raises(SvgfError, match="standard_error: expected it off with --look-ahead"):
+    with pytest.raises(SvgfError, match="standard_error: expected off with --look-ahead"):
         job_of(sources, tmp_path / "out", settings={"standard_error": True}, look_ahead=0)
 
 

@@ -54,7 +54,8 @@ def test_a_crash_is_told_by_the_signal(run) -> None:
     assert run("import os, signal; os.kill(os.getpid(), signal.SIGABRT)").code == -signal.SIGABRT
 
 
-def test_at_its_limit_it_may_write_what_it_knows(run) -> None:
+def test_at_its_limit_it_may_write_what_it_knows(run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(child, "GRACE", 60.0)  # it ends long before, unless the machine is very busy
     ended = run(KEPT, seconds=2.0)
     assert ended.is_short
     assert ended.output == "begun\nkept\n"

@@ -355,7 +355,7 @@ def test_stretches_of_several_machines_meet_in_one_folder(frames: Path, tmp_path
 @pytest.mark.parametrize(
     ("span", "words"),
     [
-        ("5-9", "--frames: expected some of 0-2, which are there, got 5-9"),
+        ("5-9", "--frames: expected frames among 0-2, got 5-9"),
         ("2-1", "--frames: expected FIRST-LAST"),
         ("one", "--frames: expected FIRST-LAST"),
     ],

@@ -106,6 +106,6 @@ def test_a_damaged_memory_is_written_anew(memory, answers, damaged):
 def test_a_memory_that_cannot_be_written_is_not_silent_and_asks_once_a_process(memory, answers, untold):
     memory.write_text("a file where the folder should be")
     answers += ["", "never asked"]
-    with pytest.warns(UserWarning, match=r"cache/probes.json: cannot be written .* each run asks devices"):
+    with pytest.warns(UserWarning, match=r"cache/probes.json: cannot be written .* each run tests devices"):
         assert probe.reason(None) == ""
     assert probe.reason(None) == ""
