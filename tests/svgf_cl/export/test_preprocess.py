@@ -79,5 +79,5 @@ def test_a_macro_that_may_be_missing_is_asked_for() -> None:
 
 def test_without_pcpp_it_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pcpp", None)
-    with pytest.raises(SvgfError, match=r"export needs pcpp .*pip install '\.\[export\]'"):
+    with pytest.raises(SvgfError, match=r"export needs pcpp .*pip install 'svgf-cl\[export\]'"):
         check_preprocessor()
