@@ -41,14 +41,14 @@ WARNINGS = (
     *("-Wunreachable-code", "-Wextra-semi-stmt", "-Werror"),
 )
 
+EITHER = (False, True)
 ROOT = Path(__file__).resolve().parent.parent
 FORMATTED = ("kernels/*.cl", "kernels/*.clh", "svgf_cl/bench/*.cl", "examples/*.cl", "examples/c_host/*.[ch]")
 
 
 def inputs() -> Iterator[Inputs]:
     """All that frames may supply."""
-    either = (False, True)
-    for signals, motion, albedo, emission, id_ in itertools.product(SPLITS, (2, 3), either, either, either):
+    for signals, motion, albedo, emission, id_ in itertools.product(SPLITS, (2, 3), EITHER, EITHER, EITHER):
         yield Inputs(signals=signals, motion=motion, albedo=albedo, emission=emission, id=id_)
 
 
@@ -59,8 +59,8 @@ def variants() -> list[Build]:
     """
     draw = random.Random(0)
     return builds(
-        Case(variant(kind, {"taa": taa, **draw.choice(SETTINGS)}), supplied, draw.choice(TUNINGS))
-        for kind, taa, supplied in itertools.product(FILTERS.values(), (False, True), inputs())
+        Case(variant(kind, draw.choice(SETTINGS) | {"taa": draw.choice(EITHER)}), supplied, draw.choice(TUNINGS))
+        for kind, supplied in itertools.product(FILTERS.values(), inputs())
     )
 
 
