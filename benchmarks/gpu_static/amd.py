@@ -8,7 +8,17 @@ from pathlib import Path
 
 from benchmarks.builds import Build
 from benchmarks.gpu_static.tools import Tools
-from benchmarks.gpu_static.usage import Compiled, Instructions, RejectedError, Usage, language, passed, said_by, written
+from benchmarks.gpu_static.usage import (
+    Compiled,
+    Instructions,
+    RejectedError,
+    Usage,
+    included,
+    language,
+    passed,
+    said_by,
+    written,
+)
 
 # RDNA 2 (32 work-items a wave), RDNA 3 (32), CDNA 2 (64); and the number by which AMD's library knows each, 1000 major
 # + 100 minor + stepping. The library brings a file with this number for each architecture, but Debian 12's has none for
@@ -42,9 +52,8 @@ def compiled(tools: Tools, architecture: str, build: Build, folder: Path) -> dic
     waves = f"wavefrontsize64_{'on' if architecture in WAVES_OF_64 else 'off'}"
     names = (*LIBRARY, *(f"oclc_{choice}" for choice in (*CHOICES, waves)))
     libraries = passed("-mlink-builtin-bitcode", *(str(tools.rocm / f"{name}.bc") for name in names))
-    version = folder / "version.h"
-    version.write_text(f"__constant int __oclc_ISA_version = {ARCHITECTURES[architecture]};\n")
-    target = (*TARGET, f"-mcpu={architecture}", *libraries, "-include", str(version))
+    version = included(f"__constant int __oclc_ISA_version = {ARCHITECTURES[architecture]};\n", folder)
+    target = (*TARGET, f"-mcpu={architecture}", *libraries, *version)
     said_by([tools.clang, *language(build), *target, "-S", "-o", assembly, written(build, folder)])
     return parse(assembly.read_text())
 

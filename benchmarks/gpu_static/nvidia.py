@@ -12,7 +12,17 @@ from elftools.elf.elffile import ELFFile
 
 from benchmarks.builds import Build
 from benchmarks.gpu_static.tools import Tools
-from benchmarks.gpu_static.usage import Compiled, Instructions, RejectedError, Usage, language, passed, said_by, written
+from benchmarks.gpu_static.usage import (
+    Compiled,
+    Instructions,
+    RejectedError,
+    Usage,
+    included,
+    language,
+    passed,
+    said_by,
+    written,
+)
 
 ARCHITECTURES = ("sm_75", "sm_90")  # Turing, Hopper
 
@@ -50,9 +60,8 @@ def compiled(tools: Tools, architecture: str, build: Build, folder: Path) -> dic
     """
     ptx, binary = folder / "kernel.ptx", folder / "kernel.cubin"
     library = passed("-mlink-builtin-bitcode", str(tools.libclc))
-    functions = folder / "functions.h"
-    functions.write_text(FUNCTIONS)
-    target = (*TARGET, *PRECISION, *QUIET, *passed("-target-cpu", architecture), *library, "-include", str(functions))
+    functions = included(FUNCTIONS, folder)
+    target = (*TARGET, *PRECISION, *QUIET, *passed("-target-cpu", architecture), *library, *functions)
     said_by([tools.clang, *language(build), *target, "-S", "-o", ptx, written(build, folder)])
     report = said_by([tools.ptxas, "-v", f"-arch={architecture}", ptx, "-o", binary])
     return {name: Compiled(usage, section(binary, f".text.{name}")) for name, usage in parse(report).items()}

@@ -88,6 +88,13 @@ def language(build: Build) -> tuple[str, ...]:
     return ("-x", "cl", *(option for option in build.options if option != "-w"), "-Xclang", "-finclude-default-header")
 
 
+def included(text: str, folder: Path) -> tuple[str, str]:
+    """Have the compiler read a text before the source; it is kept in this folder."""
+    header = folder / "included.h"
+    header.write_text(text)
+    return "-include", str(header)
+
+
 def passed(option: str, *values: str) -> tuple[str, ...]:
     """Pass an option to the compiler proper, once with each value."""
     return tuple(word for value in values for word in ("-Xclang", option, "-Xclang", value))
