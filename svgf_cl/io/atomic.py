@@ -32,20 +32,10 @@ def written_whole(path: Path) -> Iterator[Path]:
     FileError
         Where the file cannot be written; it names `path` and the system's reason.
     """
-    aside = _aside(path)
-    made: list[Path] = []
-    try:
-        made = _in_made(path.parent, aside.touch)
+    with _beside(path, Path.touch) as aside:
         yield aside
         _sync(aside)
         os.replace(aside, path)
-    except BaseException as error:
-        with contextlib.suppress(OSError):  # there never was one
-            aside.unlink()
-        _remove(made)
-        if isinstance(error, OSError):
-            raise FileError(f"{path}: cannot be written ({error.strerror or error})") from error
-        raise
 
 
 @contextmanager
@@ -59,18 +49,26 @@ def folder_written_whole(path: Path) -> Iterator[Path]:
     FileError
         Where something is at `path` already, or the folder cannot be written.
     """
-    aside = _aside(path)
-    made: list[Path] = []
-    try:
-        made = _in_made(path.parent, aside.mkdir)
+    with _beside(path, Path.mkdir) as aside:
         yield aside
         for file in aside.rglob("*"):
             if file.is_file():
                 _sync(file)
         check_new(path)  # a rename would replace an empty folder
         aside.rename(path)
+
+
+@contextmanager
+def _beside(path: Path, make: Callable[[Path], object]) -> Iterator[Path]:
+    """Make and yield what will be at `path`; it is gone if the block raises, and so are folders made for it."""
+    aside = _aside(path)
+    made: list[Path] = []
+    try:
+        made = _in_made(path.parent, lambda: make(aside))
+        yield aside
     except BaseException as error:
-        shutil.rmtree(aside, ignore_errors=True)
+        with contextlib.suppress(OSError):  # there may never have been one
+            _discard(aside)
         _remove(made)
         if isinstance(error, OSError):
             raise FileError(f"{path}: cannot be written ({error.strerror or error})") from error
@@ -175,6 +173,14 @@ def _aside(path: Path) -> Path:
     return path.with_name(f".{path.name}.{socket.gethostname()}-{os.getpid()}.tmp")
 
 
+def _discard(path: Path) -> None:
+    """Delete a file or a folder with all that is in it."""
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        path.unlink(missing_ok=True)
+
+
 def _in_made(folder: Path, act: Callable[[], object]) -> list[Path]:
     """Make a folder as `_make` does and act in it; return what was made, which is gone if it raises.
 
@@ -230,10 +236,7 @@ def _delete_leftovers(folder: Path) -> None:
     for path in folder.iterdir():
         match = left.fullmatch(path.name)
         if match and not _is_running(int(match[1])):
-            if path.is_dir() and not path.is_symlink():
-                shutil.rmtree(path, ignore_errors=True)
-            else:
-                path.unlink(missing_ok=True)
+            _discard(path)
 
 
 def _is_running(process: int) -> bool:
