@@ -1,1 +1,1 @@
-"""Plans as files: what a host in another language needs to denoise, without Python. The format: docs/export.md."""
+"""Writes plans: files from which a host in another language can denoise without Python. The format: docs/export.md."""

@@ -1,4 +1,4 @@
-"""`plan.json`: a schedule as a document, and the files that it names. The format: docs/export.md."""
+"""`plan.json`: a schedule as a document, and the files that it refers to. The format: docs/export.md."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from svgf_cl.filters.pipeline import OUT, Buffer, Pipeline, Quantity
 from svgf_cl.fingerprint import library_version
 from svgf_cl.schedule import IN_PLACE, Schedule, ScheduledPass, whole_groups
 
-FORMAT = 1  # of the document: raised by a change that a host has to know of
+FORMAT = 1  # of the document; increases with every change that a host has to know about
 SCHEMA = "plan.schema.json"
 
-Entry = dict[str, Any]  # what JSON calls an object
+Entry = dict[str, Any]  # an object of JSON
 
-PYTHONS_OWN = ("pinned_copies",)  # of a tuning: how numpy arrays reach the device
+PYTHONS_OWN = ("pinned_copies",)  # fields of a tuning that concern numpy arrays only
 
 
 def document(schedule: Schedule, settings: Filter) -> Entry:
-    """The document of a schedule of whole frames.
+    """The document for a schedule of whole frames.
 
     Parameters
     ----------
     schedule : Schedule
     settings : Filter
-        The filter whose pipeline it is.
+        The filter to which the pipeline belongs.
     """
     return {
         "$schema": SCHEMA,
@@ -59,7 +59,7 @@ def document(schedule: Schedule, settings: Filter) -> Entry:
 
 
 def data_files(schedule: Schedule) -> dict[str, bytes]:
-    """The files that the document of a schedule names, by their names: kernels and constant arrays."""
+    """The files that the document refers to, by name: kernels and constant arrays."""
     pipeline = schedule.pipeline
     kernels = {program_file(source): kernel_text(source, schedule).encode() for source in sources(pipeline)}
     arrays = constant_arrays(pipeline).items()
@@ -72,12 +72,12 @@ def sources(pipeline: Pipeline) -> list[str]:
 
 
 def program_file(source: str) -> str:
-    """Where a source file is written."""
+    """The path of a source file in the folder."""
     return f"kernels/{source}.cl"
 
 
 def kernel_text(source: str, schedule: Schedule) -> str:
-    """What is compiled for a source file, without macros to set."""
+    """The text of a source file, with all macros expanded."""
     text = preprocessed(programs.source(source), programs.macros(source, schedule.defines))
     return f"// {source}.cl of svgf_cl {version('svgf_cl')}, preprocessed. SPDX-License-Identifier: Apache-2.0\n{text}"
 
@@ -90,17 +90,17 @@ def constant_arrays(pipeline: Pipeline) -> dict[str, np.ndarray]:
 
 
 def constant_file(label: str, name: str) -> str:
-    """Where a constant array of a pass is written."""
+    """The path of a constant array of a pass."""
     return f"constants/{label.replace(' ', '_')}.{name}.raw"
 
 
 def of_array(dtype: np.dtype[np.generic], shape: tuple[int, ...]) -> Entry:
-    """An array in C order, little-endian where it is a file."""
+    """Type and shape of an array in C order; in files it is little-endian."""
     return {"type": dtype.name, "shape": list(shape), "bytes": dtype.itemsize * int(np.prod(shape))}
 
 
 def of_buffer(buffer: Buffer, schedule: Schedule) -> Entry:
-    """A buffer: what it holds, where, and from which launch to which it is needed."""
+    """A buffer: its quantities, its place in the memory, and the launches between which it is needed."""
     resource, memory = buffer.resource, schedule.memory
     layout = schedule.layout.every(resource.spacing)
     used = [number for number, scheduled in enumerate(schedule.passes) if buffer in scheduled.own.values()]
@@ -120,7 +120,7 @@ def of_buffer(buffer: Buffer, schedule: Schedule) -> Entry:
 
 
 def of_quantity(quantity: Quantity, offset: int) -> Entry:
-    """What a buffer holds of every pixel, from a byte on: plane after plane, channel by channel, signal by signal."""
+    """A quantity of a buffer and its offset in bytes; its planes are ordered by signal, then by channel."""
     return {
         "name": quantity.name,
         "format": quantity.format.name.lower(),
@@ -133,7 +133,7 @@ def of_quantity(quantity: Quantity, offset: int) -> Entry:
 
 
 def of_fill(fill: Fill, memory: Memory) -> Entry:
-    """What is written at a cut."""
+    """A part of the memory that is filled at a cut."""
     pattern = fill.value.astype(fill.value.dtype.newbyteorder("<")).tobytes()
     return {
         "buffer": fill.buffer.resource.name,
@@ -146,7 +146,7 @@ def of_fill(fill: Fill, memory: Memory) -> Entry:
 
 
 def of_launch(scheduled: ScheduledPass, schedule: Schedule) -> Entry:
-    """A launch."""
+    """A kernel launch."""
     group = schedule.tuning.work_group
     return {
         "label": scheduled.entry.label,
@@ -160,7 +160,7 @@ def of_launch(scheduled: ScheduledPass, schedule: Schedule) -> Entry:
 
 
 def of_argument(name: str, scheduled: ScheduledPass, schedule: Schedule) -> Entry:
-    """What a kernel is given as one of its arguments."""
+    """One argument of a kernel."""
     if name in scheduled.own:
         buffer = scheduled.own[name]
         return {"kind": "memory", "memory": list(schedule.memory.pieces(buffer)), "buffer": buffer.resource.name}
@@ -177,7 +177,7 @@ def of_argument(name: str, scheduled: ScheduledPass, schedule: Schedule) -> Entr
 
 
 def of_value(value: np.ndarray | np.generic) -> Entry:
-    """A number, or four whole ones."""
+    """A number, or four integers."""
     if isinstance(value, np.ndarray):
         return {"kind": "int4", "value": value.tolist()}
     return {"kind": "int" if isinstance(value, np.integer) else "float", "value": value.item()}

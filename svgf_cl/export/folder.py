@@ -15,19 +15,19 @@ PLAN = "plan.json"
 
 
 def write_plan(folder: Path, schedule: Schedule, settings: Filter) -> None:
-    """Write a schedule of whole frames to a new folder, whole or not at all.
+    """Write a schedule of whole frames to a new folder, completely or not at all.
 
     Parameters
     ----------
     folder : Path
     schedule : Schedule
     settings : Filter
-        The filter whose pipeline it is.
+        The filter to which the pipeline belongs.
 
     Raises
     ------
     FileError
-        Where something is there already, or the folder cannot be written.
+        If the path exists already, or the folder cannot be written.
     SvgfError
         If the package pcpp is missing.
     """

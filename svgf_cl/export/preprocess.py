@@ -1,4 +1,4 @@
-"""Kernels as OpenCL C without macros to set: what the C preprocessor makes of a source file, written out."""
+"""Expands the macros of kernels, so that the files that are written need no macros."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ if TYPE_CHECKING:
 
 
 def preprocessed(source: str, macros: Mapping[str, str]) -> str:
-    """Expand the macros of a source and take its conditions, so that it is compiled without options -D.
+    """Expand the macros of a source and evaluate its conditions, so that it can be compiled without -D options.
 
-    Pragmas stay. So do conditions on what only the device's compiler knows, such as ``__OPENCL_VERSION__`` and
+    Pragmas stay. Conditions that only the device's compiler can evaluate stay, too, such as ``__OPENCL_VERSION__`` and
     ``cl_khr_fp16``.
 
     Parameters
     ----------
     source : str
     macros : mapping of str to str
-        The text of each macro that is set from outside.
+        The value of each macro that is set from outside.
 
     Raises
     ------
     SvgfError
         If the package pcpp is missing.
     ValueError
-        If a directive is wrong, or a condition asks for a macro that is not there.
+        If a directive is wrong, or a condition uses a macro that is not defined.
     """
     preprocessor = _preprocessor()
     for name, text in macros.items():
@@ -48,7 +48,7 @@ def check_preprocessor() -> None:
 
 
 def _preprocessor() -> Preprocessor:
-    """A preprocessor as strict as the project's kernels are: what it does not understand is an error."""
+    """A strict preprocessor: anything that it does not understand is an error."""
     try:
         from pcpp import Preprocessor
     except ImportError as error:
@@ -69,7 +69,7 @@ def _preprocessor() -> Preprocessor:
         def on_directive_unknown(self, directive: Any, tokens: Any, *state: Any) -> bool | None:
             if directive.value == "error":
                 raise ValueError(f"#error {''.join(token.value for token in tokens)}")
-            return True if directive.value == "line" else None  # lines are those of the file that is written
+            return True if directive.value == "line" else None  # line numbers are those of the written file
 
     preprocessor = Strict()
     preprocessor.line_directive = None
@@ -77,5 +77,5 @@ def _preprocessor() -> Preprocessor:
 
 
 def is_compilers(macro: str) -> bool:
-    """Whether a macro is the compiler's own: of the language, or of an extension."""
+    """Whether the compiler defines a macro itself: a macro of the language or of an extension."""
     return macro.startswith("__") or macro.lower().startswith("cl_")

@@ -16,7 +16,7 @@ from svgf_cl.settings import documented
 class Accumulation(TemporalFilter):
     """Parameters of temporal accumulation alone, without any filter over space. Equations: docs/algorithm.md.
 
-    The other filters begin with it. In a comparison it shows what their spatial part adds.
+    The other filters begin with this accumulation. In a comparison it shows what their spatial part adds.
     """
 
     name: ClassVar[str] = "accumulation"
@@ -29,4 +29,5 @@ class Accumulation(TemporalFilter):
             self.temporal_pass(inputs, accumulated, accumulated, alpha_moments=self.alpha_color),
             *self.last_passes(inputs, accumulated),
         )
-        return Pipeline(passes, inputs.defines | self.macros | {"FAST": 0})  # no weights, but the shared headers ask
+        # no weights are used, but the shared headers need the macro
+        return Pipeline(passes, inputs.defines | self.macros | {"FAST": 0})

@@ -1,4 +1,4 @@
-"""What cross-bilateral filters share: one mean over a window. Equations: docs/algorithm.md, section 8."""
+"""Passes and buffers that the bilateral filters SBF and LBF share. Equations: docs/algorithm.md, section 8."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ class BilateralFilter(SpatialFilter):
         return Resource("filtered", "illumination", (self.color(inputs, "filtered"),))
 
     def surface(self, inputs: Inputs, taps: Taps) -> Access:
-        """What a kernel reads of the guide to tell surfaces apart at these pixels."""
+        """The planes of the guide that a kernel reads at these pixels to compare surfaces."""
         guide = self.guide(inputs)
         return access(guide, taps={name: taps for name in guide.names if name != "id"})
 
     def first_passes(self, inputs: Inputs) -> tuple[Pass, ...]:
-        """What comes before the window: demodulation, accumulation, and the variance."""
+        """The passes before the window: demodulation, accumulation, and the variance."""
         accumulated = self.accumulated(inputs)
         return (
             self.demodulate_pass(inputs),

@@ -17,8 +17,9 @@ from svgf_cl.settings import documented, number
 class Eaw(WaveletFilter):
     """Parameters of edge-avoiding a-trous wavelets (Dammertz et al. 2010). Equations: docs/algorithm.md.
 
-    The levels filter accumulated noisy light, and use one tolerance for edges in it for the whole picture. SVGF
-    (`Settings`) estimates that tolerance for each pixel. For comparison, and for scenes of even light.
+    The levels filter accumulated noisy light. They use one tolerance for edges in the light for the whole picture,
+    while SVGF (`Settings`) estimates this tolerance for each pixel. EAW is for comparison, and for scenes with even
+    light.
     """
 
     name: ClassVar[str] = "eaw"
@@ -34,7 +35,7 @@ class Eaw(WaveletFilter):
     )
 
     def pipeline(self, inputs: Inputs) -> Pipeline:
-        """The passes of a frame: accumulated noisy light is what the levels filter, and the next frame's history."""
+        """The passes of a frame; accumulated noisy light is the levels' input and the next frame's history."""
         accumulated = Resource("accumulated", "illumination", (self.color(inputs, "accumulated"),), Life.PAIR)
         names = [f"level_{level}" for level in range(1, self.iterations + 1)]
         steps = [accumulated, *(Resource(name, "illumination", (self.color(inputs, name),)) for name in names)]
@@ -46,7 +47,7 @@ class Eaw(WaveletFilter):
                 steps,
                 {"sigma_color": self.sigma_color},
                 LightOperations(
-                    weight=3 + 4 + 5 + 2 + EXP[self.precision],  # differences; green's; squares; to the exponent; w_c
+                    weight=3 + 4 + 5 + 2 + EXP[self.precision],  # differences; green; squares; the exponent; w_c
                     sums=2 * 3 + 1,  # w c; w
                     once=3 + 1 + 3,  # scale of w_c; the quotients
                 ),

@@ -1,4 +1,4 @@
-"""What every filter is: checked settings that make a pipeline."""
+"""The base class of all filters: checked settings that make a pipeline."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from svgf_cl.settings import SettingsBase
 
 @dataclass(frozen=True, kw_only=True)
 class Filter(SettingsBase, ABC):
-    """A filter with its settings; its float64 oracle is `Oracle` in the module of its name in `svgf_cl.oracle`."""
+    """A filter with its settings; `svgf_cl.oracle.<name>.Oracle` is the same filter in float64."""
 
     name: ClassVar[str]
 
     @abstractmethod
     def pipeline(self, inputs: Inputs) -> Pipeline:
-        """The passes of a frame that supplies `inputs`."""
+        """The passes of a frame with the fields `inputs`."""

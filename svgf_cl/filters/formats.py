@@ -1,4 +1,4 @@
-"""How the numbers of a plane are kept, in 32 bits or in 16, and read back; kernels/storage.clh matches it."""
+"""How planes store numbers, in 32 or in 16 bits, and how they are read back; kernels/storage.clh does the same."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
-SNORM_MAX = 32767  # the whole number that stands for 1
-HALF_MAX = 65504.0  # the greatest 16-bit float
+SNORM_MAX = 32767  # the integer that stands for 1
+HALF_MAX = 65504.0  # the largest finite 16-bit float
 
 
 class Format(Enum):
-    """What a plane's elements are: their type, and what they hold of a value."""
+    """The type of a plane's elements, and how an element represents a value."""
 
     FLOAT = "float32", "the value"
     SNORM = "int16", "a value of -1..1 times SNORM_MAX"
@@ -22,22 +22,22 @@ class Format(Enum):
 
     @property
     def dtype(self) -> np.dtype[np.generic]:
-        """Of an element."""
+        """The type of an element."""
         return np.dtype(self.value[0])
 
     @property
     def nbytes(self) -> int:
-        """Of an element."""
+        """Bytes of an element."""
         return self.dtype.itemsize
 
     def encoded(self, value: float) -> NDArray[np.generic]:
-        """The element that stands for a value, as an array without axes."""
+        """The element that represents a value, as an array without axes."""
         if self is Format.SNORM:
             return np.array(round(value * SNORM_MAX), self.dtype)
         return np.array(value**0.5 if self is Format.ROOT else value, self.dtype)
 
     def decoded(self, elements: NDArray[np.generic]) -> NDArray[np.float32]:
-        """What elements stand for, as a copy."""
+        """The values that elements represent, as a copy."""
         values = np.array(elements, np.float32, order="C")
         if self is Format.SNORM:
             values /= SNORM_MAX
@@ -46,19 +46,19 @@ class Format(Enum):
 
 @dataclass(frozen=True)
 class Planes:
-    """How many planes make up a buffer: so many of 32 bits and, behind them, so many of 16."""
+    """The number of planes of a buffer: planes of 32 bits, followed by planes of 16 bits."""
 
     full: int
     half: int = 0
 
     @property
     def depth(self) -> int:
-        """Bits of a pixel."""
+        """Bits per pixel."""
         return 32 * self.full + 16 * self.half
 
     @property
     def count(self) -> int:
-        """Planes of either kind."""
+        """Planes of both kinds."""
         return self.full + self.half
 
     @property
@@ -67,5 +67,5 @@ class Planes:
         return bool(self.full and self.half)
 
     def over(self, other: Planes) -> Planes:
-        """What has room for either."""
+        """The smallest number of planes of each kind that has room for either buffer."""
         return Planes(max(self.full, other.full), max(self.half, other.half))

@@ -17,12 +17,12 @@ from svgf_cl.filters.temporal import Plane
 from svgf_cl.filters.wavelet import WaveletFilter
 from svgf_cl.settings import documented, number, switch
 
-SPACING = 2  # pixels: light is tested for change at every second one of every second row
-CARRIED = ("color", "spread", "inverse_count", "tone", "residual")  # of the state, into the next frame
-FILTERED = "filtered"  # the last level, of which the next frame sees the luminance, however many there are
-STANDARD_ERROR = "standard_error"  # the stage, and the channel of files
+SPACING = 2  # pixels: the test for changes runs at every second pixel of every second row
+CARRIED = ("color", "spread", "inverse_count", "tone", "residual")  # quantities of the state that the next frame reads
+FILTERED = "filtered"  # the name of the last level, whose luminance the next frame reads, for any number of levels
+STANDARD_ERROR = "standard_error"  # the name of the stage, and of the channel in files
 
-STEPS = (1, 2, 4)  # of these, between the taps of the passes after the first
+STEPS = (1, 2, 4)  # coarse pixels between the taps of each pass of the test after the first
 
 
 @documented
@@ -32,7 +32,7 @@ class Kalman(WaveletFilter):
 
     Light accumulates unfiltered, with a gain that depends on its uncertainty. A test over neighbourhoods of growing
     size finds where the light has changed; there the history is corrected and trusted less. The a-trous levels filter
-    only the picture that is shown, and use the variance of a mean instead of that of a sample.
+    only the picture that is shown. They use the variance of a mean, not the variance of a sample.
     """
 
     name: ClassVar[str] = "kalman"
@@ -105,7 +105,7 @@ class Kalman(WaveletFilter):
 
     @property
     def change_scalars(self) -> dict[str, Number]:
-        """What tells surfaces apart in the test, as kernels take it."""
+        """The settings by which the test compares surfaces, as arguments of kernels."""
         return {
             "sigma_depth": self.change_sigma_depth,
             "sigma_normal": self.change_sigma_normal,
@@ -113,7 +113,7 @@ class Kalman(WaveletFilter):
         }
 
     def pipeline(self, inputs: Inputs) -> Pipeline:
-        """The passes of a frame: predict, test, update, then the levels, of which the next frame sees the luminance."""
+        """The passes of a frame: predict, test, update, levels. The next frame reads the last level's luminance."""
         names = [*(f"level_{level}" for level in range(1, self.iterations)), FILTERED]
         levels = [self.filtered(inputs, name, is_last=name == FILTERED) for name in names]
         passes = (
@@ -134,12 +134,13 @@ class Kalman(WaveletFilter):
                 [self.guidance(inputs, "guidance_1"), *[self.guidance(inputs, "guidance")] * (self.iterations - 1)],
             ),
             *self.last_passes(inputs, levels[-1]),
-            *self.confidence_passes(inputs, levels[-1]),  # at the end, where no later pass takes its memory
+            # at the end, because a later pass could reuse the memory of its input
+            *self.confidence_passes(inputs, levels[-1]),
         )
         return Pipeline(passes, inputs.defines | self.macros | {"GUIDED_BY_VARIANCE": 1, "GUIDED_BY_PAST": 1})
 
     def predict_pass(self, inputs: Inputs, filtered: Resource) -> Pass:
-        """What was known of each pixel's light, moved along motion, and how the new frame differs from it."""
+        """Move the state of the previous frame along motion, and compare the new frame with it."""
         guide, state = self.guide(inputs), self.state(inputs)
         taps = footprint(2)
         return Pass(
@@ -156,12 +157,12 @@ class Kalman(WaveletFilter):
                 access(filtered, "filtered", {"color": taps}),
             ),
             writes=(access(self.prediction(inputs)), access(self.innovation(inputs))),
-            rarely=(footprint(4),),  # thin geometry: the nine pixels around the nearest
+            rarely=(footprint(4),),  # for thin geometry: the nine pixels around the nearest one
             operations=operations.predict(inputs),
         )
 
     def test_passes(self, inputs: Inputs) -> Iterator[Pass]:
-        """Means of the innovation over neighbourhoods of growing size, and what of it is a change of light."""
+        """Average the innovation over growing neighbourhoods, and decide how much of it is a change of light."""
         signals = len(inputs.signals)
         guide, facets, innovation = self.guide(inputs), self.facets(), self.innovation(inputs)
         changes = [self.change(inputs, scale) for scale in range(1, len(STEPS) + 1)]
@@ -209,7 +210,7 @@ class Kalman(WaveletFilter):
                 )
 
     def update_pass(self, inputs: Inputs) -> Pass:
-        """The prediction, corrected by what has changed, blended with the new light by the Kalman gain."""
+        """Correct the prediction by the change of light, then blend it with the new light by the Kalman gain."""
         state = self.state(inputs)
         return Pass(
             "update",
@@ -227,12 +228,12 @@ class Kalman(WaveletFilter):
                 access(self.correction(inputs), taps=dict.fromkeys(self.correction(inputs).names, BLOCK)),
             ),
             writes=(access(state, taps=dict.fromkeys(CARRIED, HERE)), access(self.expected(inputs))),
-            rarely=(grid(3),),  # what is too thin for every second pixel
+            rarely=(grid(3),),  # for objects that are too thin to be seen at every second pixel
             operations=operations.update(inputs),
         )
 
     def guidance_pass(self, inputs: Inputs) -> Pass:
-        """The luminance by which the levels tell light apart, and the variance where history is short."""
+        """Compute the luminance by which the levels compare light, and the variance where history is short."""
         guide, state = self.guide(inputs), self.state(inputs)
         near = grid(1)
         return Pass(
@@ -254,7 +255,7 @@ class Kalman(WaveletFilter):
         )
 
     def confidence_passes(self, inputs: Inputs, filtered: Resource) -> Iterator[Pass]:
-        """The standard error of the filtered light, if it is asked for."""
+        """Compute the standard error of the filtered light, if the setting is on."""
         if not self.standard_error:
             return
         albedo = (user("albedo"),) if inputs.divides_by_albedo else ()
@@ -268,15 +269,15 @@ class Kalman(WaveletFilter):
         )
 
     def age(self, inputs: Inputs) -> Access:
-        """What antialiasing wants to know of the past: one over the number of samples that the history stands for."""
+        """The inverse of the number of samples in the history, which antialiasing reads."""
         return access(self.state(inputs), "moments", {"inverse_count": grid(1)})
 
     def uncertainty(self, stage: Callable[[str], Plane]) -> Plane:
-        """As every filter's, by the state; of several signals the mean."""
+        """As in `TemporalFilter`, but read from the state; with several signals, their mean."""
         return np.asarray(stage("inverse_count").mean(axis=0))
 
     def state(self, inputs: Inputs) -> Resource:
-        """What is known of the light: its mean, the mean's variance, and what the next frame needs to go on."""
+        """The accumulated light, its variance, and the other quantities that the next frame reads."""
         signals, light, variance = len(inputs.signals), self.light_format, self.variance_format
         quantities = (
             self.color(inputs, "accumulated"),
@@ -289,7 +290,7 @@ class Kalman(WaveletFilter):
         return Resource("state", "illumination", quantities, Life.PAIR, over="prediction")
 
     def prediction(self, inputs: Inputs) -> Resource:
-        """The state of the previous frame, where the pixel was then, and the luminance that was shown there."""
+        """The state of the previous frame at the place where the pixel was, and the luminance that was shown there."""
         names = ("spread", "inverse_count", "tone", "luminance")
         signals = len(inputs.signals)
         color = Quantity("color", 3, signals, stage="predicted", is_light=True)
@@ -297,7 +298,7 @@ class Kalman(WaveletFilter):
         return Resource("prediction", "prediction", (color, *others))
 
     def innovation(self, inputs: Inputs) -> Resource:
-        """How the new frame differs from the prediction; the residual is huge where there is none."""
+        """The difference between the new frame and the prediction; the residual is huge if there is no prediction."""
         signals = len(inputs.signals)
         color = Quantity("color", 3, signals, stage="innovation", is_light=True)
         residual = Quantity("residual", 1, signals, stage="innovation_residual")
@@ -309,7 +310,7 @@ class Kalman(WaveletFilter):
         return Resource("facets", "facets", (Quantity("depth", stage="facet_depth"), gradient, normal), spacing=SPACING)
 
     def change(self, inputs: Inputs, scale: int) -> Resource:
-        """Means of the innovation over a neighbourhood, and the share of a sample's variance that they have."""
+        """Means of the innovation over a neighbourhood, and their variance as a share of a sample's variance."""
         signals, stage = len(inputs.signals), f"change_{scale}"
         color = Quantity("color", 3, signals, stage=stage, is_light=True)
         names = ("square", "residual", "residual_square")
@@ -317,7 +318,7 @@ class Kalman(WaveletFilter):
         return Resource(stage, "change", (Quantity("share", stage=f"{stage}_share"), color, *others), spacing=SPACING)
 
     def correction(self, inputs: Inputs) -> Resource:
-        """What has changed of the light, how uncertain that is, and the innovation's variance over space."""
+        """The change of light, its uncertainty, and the variance of the innovation over space."""
         signals = len(inputs.signals)
         color = Quantity("color", 3, signals, stage="correction", is_light=True)
         names = ("residual", "doubt", "spread")
@@ -325,17 +326,17 @@ class Kalman(WaveletFilter):
         return Resource("correction", "correction", (color, *others), spacing=SPACING)
 
     def expected(self, inputs: Inputs) -> Resource:
-        """The luminance that will be shown, as far as the past tells, and the variance of the mean."""
+        """The luminance that the picture is expected to have, and the variance of the mean."""
         names = ("luminance", "variance")
         quantities = tuple(Quantity(name, 1, len(inputs.signals), stage=f"expected_{name}") for name in names)
         return Resource("expected", "expected", quantities)
 
     def guidance(self, inputs: Inputs, name: str) -> Resource:
-        """The luminance that a level adds to that of its own light when it tells light apart."""
+        """The luminance that a level adds to the luminance of its own light when it compares light."""
         return Resource(name, "guidance", (Quantity("luminance", 1, len(inputs.signals), stage=name),))
 
     def filtered(self, inputs: Inputs, name: str, *, is_last: bool) -> Resource:
-        """What a level makes; of the last the next frame reads the luminance."""
+        """The output of a level; the next frame reads the luminance of the last level."""
         spread = Quantity("variance", 1, len(inputs.signals), self.variance_format, f"{name}_variance")
         life = Life.HISTORY if is_last else Life.SCRATCH
         return Resource(name, "illumination", (self.color(inputs, name), spread), life)

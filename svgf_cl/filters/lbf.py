@@ -24,7 +24,7 @@ INPUTS = 31  # statistics of a neighbourhood
 HIDDEN = 10
 OUTPUTS = 4  # the filter's parameters: for distance, depth, normal and light
 WINDOW = 10  # pixels to either side
-WIDE = 3  # the same, of the larger neighbourhood of the statistics
+WIDE = 3  # pixels to either side, for the larger neighbourhood of the statistics
 FILE = "lbf.json"  # beside this module; `python -m benchmarks.training` writes it
 
 Weights = NDArray[np.float64]

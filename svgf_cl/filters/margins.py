@@ -1,4 +1,4 @@
-"""How far around a part of an image each pass must be right, so that the part itself is: by the taps of all passes."""
+"""The margin around a part of an image that each pass has to compute, so that the part itself is right."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from svgf_cl.filters.pipeline import Buffer, Pipeline
 
 
 def margins(pipeline: Pipeline) -> tuple[int, ...]:
-    """Pixels around a part of the image at which the results of each pass must be right, in the order of the passes.
+    """The margin in pixels in which each pass must have right results, in the order of the passes.
 
-    What lasts and what the user gets is wanted at the part alone. From there on backwards, whatever makes a buffer
-    must be right wherever a later pass reads it. What a pass reads along motion does not count: it is of another frame.
+    The results and the history are needed in the part only. Going backwards from there, each pass must be right
+    wherever a later pass reads its results. Taps along motion do not count, because they read the previous frame.
     """
     wanted: defaultdict[Buffer | str, int] = defaultdict(int)
     found = []
@@ -26,7 +26,7 @@ def margins(pipeline: Pipeline) -> tuple[int, ...]:
 
 
 def widest_margin(pipeline: Pipeline) -> int:
-    """Pixels around a part of the image that are read to make it."""
+    """The margin in pixels around a part of the image that the passes read to compute it."""
     return max(
         margin + entry.reach(each)
         for entry, margin in zip(pipeline.passes, margins(pipeline), strict=True)

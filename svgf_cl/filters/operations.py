@@ -1,8 +1,9 @@
-"""Floating-point operations a pixel of the passes that filters share, counted from their equations, not their kernels.
+"""Floating-point operations per pixel of the passes, counted from the equations and not from the kernels.
 
-The equations are those of docs/algorithm.md, in single precision. An addition, multiplication, comparison with its
-choice, absolute value, rounding, division and root count as one each, so a multiply-add counts as two. What several
-taps have in common counts once. The state is steady: what a pass does only where history is short or lost is left out.
+The equations are in docs/algorithm.md; precision is single. An addition, multiplication, absolute value, rounding,
+division or root counts as one operation, and so does a comparison together with the choice that follows it. So a
+multiply-add counts as two. Work that several taps share counts once. The count is for a steady state, without the work
+that is done only where history is short or lost.
 """
 
 from __future__ import annotations
@@ -12,16 +13,17 @@ from dataclasses import dataclass
 
 from svgf_cl.filters.signals import Inputs
 
-DOT = 5  # x x' + y y' + z z'; a luminance too
-EXP = {"precise": 14, "fast": 2}  # polynomial of degree 4, 2 a degree, and 6 to reduce the range; or a conversion
+DOT = 5  # x x' + y y' + z z'; also for a luminance
+# polynomial of degree 4 with 2 per degree, and 6 to reduce the range; or one conversion
+EXP = {"precise": 14, "fast": 2}
 BLEND = 3  # a + t (b - a)
 DISTANCE = 3  # |a - b| scale
-ALBEDO = 5 + 2  # all channels of a code between two others; a choice
-GRADIENT = 10  # per axis two differences, two magnitudes, a choice
-SAFE = 2  # finite? else another value
+ALBEDO = 5 + 2  # compare all channels of a code with two bounds; a choice
+GRADIENT = 10  # per axis: two differences, two magnitudes, a choice
+SAFE = 2  # replace a value that is not finite
 SMOOTH_VARIANCE = 9 * (2 + 1 + 1) + 1 + 1 + 4 + 1  # 3x3 Gaussian over hits; root; the scale of w_l
-WEIGHT = DISTANCE + 1 + 2 * 3 + EXP["precise"]  # of a tap by depth and normal
-TOLERANCE = 4 + 2 + 1  # of depth, at a tap: |g . d|; plus the floor; reciprocal
+WEIGHT = DISTANCE + 1 + 2 * 3 + EXP["precise"]  # the weight of a tap by depth and normal
+TOLERANCE = 4 + 2 + 1  # tolerance of depth at a tap: |g . d|; plus the floor; reciprocal
 FOOTPRINT = 2 * (1 + 2 + 2) + GRADIENT + 4  # clamp, floor and fraction per axis; tolerance of depth
 FACET = 3 + 2 + 1  # normal, slope and floor times their sigmas
 FEATURES = GRADIENT + 6 + 3 + 4 * (DOT + 3) + 2 + 2 + 2  # 1 / psi_z; 2 n; |n - n'|^2 of four; the smaller; 1 / psi_n^2
@@ -31,13 +33,13 @@ def demodulate(inputs: Inputs) -> float:
     """Section 1: a unit normal, then radiance made safe, divided by albedo and clamped, and its luminance."""
     signals = len(inputs.signals)
     normal = DOT + 2 + 3 + SAFE
-    albedo = 3 * (SAFE + 1 + 1) + 4 if inputs.divides_by_albedo else 0  # its code; the floors
+    albedo = 3 * (SAFE + 1 + 1) + 4 if inputs.divides_by_albedo else 0  # the code of albedo; the floors
     emission = 3 * (SAFE + 2) if inputs.emission_signal >= 0 else 0
     return normal + albedo + emission + signals * (3 * (SAFE + 1 + 2) + DOT)
 
 
 def temporal(inputs: Inputs) -> float:
-    """Section 2: four taps of the footprint, each held against the surface, then the blend of colour and moments."""
+    """Section 2: compare the four taps of the footprint with the surface, then blend colour and moments."""
     signals = len(inputs.signals)
     tap = tap_of_the_past(inputs) + 2 * (1 + 3 * signals) + signals * (2 + 3 + 2)  # N, c; M; V + (M - M_h)^2
     blend = signals * (3 * BLEND + BLEND + 1 + 4)  # c; M; 1 - a; V
@@ -59,7 +61,7 @@ def predict(inputs: Inputs) -> float:
 
 
 def mean_of_change(taps: int, signals: int) -> float:
-    """Section 7: one pass of the test, of so many taps beside the middle one; pairs share the tolerance of depth."""
+    """Section 7: one pass of the test, over `taps` taps and the centre; opposite taps share the tolerance of depth."""
     sums = 2 * 3 + 2 + 2 + 2  # d, r, e, f
     return FACET + (taps + 1) // 2 * TOLERANCE + taps * (WEIGHT + 4) + (taps + 1) * signals * sums + 1 + signals * 6
 
@@ -71,7 +73,7 @@ def detect(signals: int) -> float:
 
 
 def update(inputs: Inputs) -> float:
-    """Section 7: the corrections of the surroundings, the gain, the blend; on average 9/4 taps are read."""
+    """Section 7: the correction from the neighbours, the gain, the blend; on average 9/4 taps are read."""
     signals = len(inputs.signals)
     tap = TOLERANCE + WEIGHT + 2 + 2 * 6 * signals
     gain = 2 + 7 + 3 + 3 + 3  # R; q; W; a; Var
@@ -80,23 +82,23 @@ def update(inputs: Inputs) -> float:
 
 
 def guidance(inputs: Inputs) -> float:
-    """Section 7: nine taps of luminance, of which pairs share the tolerance of depth."""
+    """Section 7: nine taps of luminance; opposite taps share the tolerance of depth."""
     signals = len(inputs.signals)
     return GRADIENT + FACET + 4 * TOLERANCE + 8 * (WEIGHT + 1) + 9 * (1 + 2 * signals) + signals * (1 + 3)
 
 
 @dataclass(frozen=True)
 class LightOperations:
-    """What a wavelet filter does with light, of each signal.
+    """The operations that a wavelet filter does with the light of each signal.
 
     Parameters
     ----------
     weight : float
-        For the weight of a tap's light, its exponential included.
+        For the weight of a tap's light, including its exponential.
     sums : float
-        For adding a tap up.
+        For adding a tap to the sums.
     once : float
-        For what the pixel's own light takes.
+        Once per pixel.
     """
 
     weight: float
@@ -105,12 +107,12 @@ class LightOperations:
 
 
 def wavelet(inputs: Inputs, taps: int, light: LightOperations) -> float:
-    """Section 4: one level of so many taps beside the middle one; those at +d and -d share the tolerance of depth.
+    """Section 4: one level, over `taps` taps and the centre; the taps at +d and -d share the tolerance of depth.
 
-    The terms and the spline add up to one exponent; its factors are those of the pixel, not of the tap.
+    The terms and the spline add up to one exponent; its factors are computed once per pixel, not once per tap.
     """
-    exponent = DISTANCE + 1 + 2 * 3  # of w_z and h; of w_n
-    exponent += ALBEDO if inputs.divides_by_albedo else 0  # of w_a
+    exponent = DISTANCE + 1 + 2 * 3  # w_z and h; w_n
+    exponent += ALBEDO if inputs.divides_by_albedo else 0  # w_a
     per_signal = taps * (light.weight + light.sums) + light.once
     return GRADIENT + FACET + taps // 2 * TOLERANCE + taps * exponent + len(inputs.signals) * per_signal
 
@@ -121,7 +123,7 @@ def feature_distance(inputs: Inputs) -> float:
 
 
 def scales(inputs: Inputs, taps: Sequence[int], exponential: float) -> float:
-    """Section 8: a cross-bilateral filter of so many taps beside the middle one at each scale, and its risk; SBF."""
+    """Section 8: the cross-bilateral filter of SBF, over `taps` taps and the centre at each scale, and its risk."""
     signals = len(inputs.signals)
     weights = max(taps) * (feature_distance(inputs) + 4 + exponential + 2)
     sums = sum(taps) * (2 + signals * (2 * 3 + 1))
@@ -130,23 +132,23 @@ def scales(inputs: Inputs, taps: Sequence[int], exponential: float) -> float:
 
 
 def window(inputs: Inputs, taps: int, exponential: float) -> float:
-    """Section 8: a cross-bilateral filter of so many taps beside the middle one, with parameters of its own; LBF."""
+    """Section 8: the cross-bilateral filter of LBF, over `taps` taps and the centre, with parameters for each pixel."""
     signals = len(inputs.signals)
     weight = 3 + 4 * 2 + exponential + 2  # D_l; the exponent; whether it counts
-    once = SMOOTH_VARIANCE + 4 + 1 + 3  # the parameters' unit; the quotients
+    once = SMOOTH_VARIANCE + 4 + 1 + 3  # scaling the parameters; the quotients
     return FEATURES + taps * (feature_distance(inputs) + signals * (weight + 2 * 3 + 1)) + signals * once
 
 
 def network(inputs: Inputs, taps: int, layers: tuple[int, int, int], exponential: float) -> float:
-    """Section 8: statistics of four features over so many taps, and the layers of the network; LBF.
+    """Section 8: statistics of four features over `taps` taps, and the layers of LBF's network.
 
-    Signals have the statistics of the surface in common.
+    Signals share the statistics of the surface.
     """
     sees, hidden, makes = layers
     signals = len(inputs.signals)
     channels = signals + 1 + 3 + (1 if inputs.divides_by_albedo else 0)  # light, depth, normal, albedo
-    sums = taps * (1 + 1 + 2 + 2) + 9 * (1 + 2 + 2)  # f(q) - f(p); its sum; of its squares; of its magnitudes
-    ends = 2 * (1 + 1 + 2 + 2) + 2 * 3 + 1  # of both neighbourhoods: the means; the deviation; then the gradient
+    sums = taps * (1 + 1 + 2 + 2) + 9 * (1 + 2 + 2)  # f(q) - f(p); its sum; the sum of squares; the sum of magnitudes
+    ends = 2 * (1 + 1 + 2 + 2) + 2 * 3 + 1  # both neighbourhoods: means; deviation; then the gradient
     squashing = sees * (1 + 1 + 1 + 1) + hidden * 3
     products = 2 * sees * hidden + 2 * hidden * makes
     per_signal = squashing + products + SMOOTH_VARIANCE + makes * (2 + exponential)
@@ -154,7 +156,7 @@ def network(inputs: Inputs, taps: int, layers: tuple[int, int, int], exponential
 
 
 def choice(inputs: Inputs, taps: int, candidates: int) -> float:
-    """Section 8: risks smoothed over so many taps beside the middle one, and the least of them; SBF."""
+    """Section 8: smooth SBF's risks over `taps` taps and the centre, and choose the least one."""
     signals = len(inputs.signals)
     exponent = DISTANCE + 1 + 2 * 3 + (ALBEDO if inputs.divides_by_albedo else 0)
     weights = GRADIENT + FACET + taps // 2 * TOLERANCE + taps * (exponent + EXP["precise"])
@@ -175,7 +177,7 @@ def standard_error(inputs: Inputs) -> float:
 
 
 def taa(*, filters_pixels: bool) -> float:
-    """Section 6: nearest neighbour, longest history, YCoCg, 4x4 taps, clamp, blend and back; the pixel filter's 3x3."""
+    """Section 6: nearest neighbour, longest history, YCoCg and back, 4x4 taps, clamp, blend, 3x3 pixel filter."""
     ycocg = 3 + 4
     foremost, longest = 9 * 2, 9 * 2
     history = 2 * 16 + 16 * (1 + 2 * 3)

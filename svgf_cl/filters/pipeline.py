@@ -1,7 +1,7 @@
-"""The words in which a filter is declared: what buffers hold, and which pass reads and writes what of them.
+"""The classes that declare a filter: what buffers hold, and what each pass reads and writes.
 
-Memory, views of what lies between the passes, traffic, the macros by which kernels find a plane, and the order of a
-kernel's arguments all follow from a filter's `Pipeline`.
+The memory, the stages, the traffic, the macros by which kernels find planes, and the order of a kernel's arguments all
+follow from a filter's `Pipeline`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ from svgf_cl.filters.taps import HERE, Taps
 from svgf_cl.frame import CHANNELS
 
 OUT = "out"  # the user's array for the result
-# Since the last cut, from 0; and where a pixel of this frame lies in the past, from its own place.
+# The number of frames since the last cut, from 0; and the offset of a position in the data of the past, which differs
+# from 0 in tiles only.
 FRAME_SCALARS: Mapping[str, type[np.generic]] = dict.fromkeys(("frame_number", "past_x", "past_y"), np.int32)
 PAST = ("past_x", "past_y")
 
@@ -27,7 +28,7 @@ Number = int | float
 
 @dataclass(frozen=True)
 class Quantity:
-    """Something that a buffer holds of every pixel; all its planes lie together, signal by signal.
+    """Something that a buffer holds for every pixel; all its planes are adjacent, signal by signal.
 
     Parameters
     ----------
@@ -35,15 +36,15 @@ class Quantity:
         Kernels find its first plane by the macro <KIND>_<NAME>, its channels by <KIND>_<NAME>_CHANNELS.
     channels : int
     signals : int
-        How many signals have one each; 0 where all share it.
+        The number of signals that have one each; 0 if all signals share it.
     format : Format
     stage : str
-        Name by which `Denoiser.stage` shows it; not shown where empty.
+        The name by which `Denoiser.stage` shows it; empty if it is not shown.
     is_light : bool
         Whether its channels are stored as red, luminance and blue, and shown as red, green and blue.
     unknown : float, optional
-        What it holds where nothing is known of the past, for a kernel that does not go by the frame's number; written
-        before the first frame and after a cut.
+        The value that means that nothing is known of the past. It is for kernels that do not use the frame's number,
+        and is written before the first frame and after a cut.
     """
 
     name: str
@@ -56,12 +57,12 @@ class Quantity:
 
     @property
     def planes(self) -> int:
-        """Of all signals."""
+        """Planes of all signals."""
         return self.channels * max(self.signals, 1)
 
     @property
     def nbytes(self) -> int:
-        """Of a pixel."""
+        """Bytes per pixel."""
         return self.planes * self.format.nbytes
 
 
@@ -80,16 +81,18 @@ class Resource:
     Parameters
     ----------
     name : str
-        Of this buffer alone.
+        A name that no other buffer has.
     kind : str
-        Buffers of one kind have the same quantities, or the first of them; kernels name planes by it.
+        Buffers of one kind have the same quantities, or only the first few of them. Kernels name planes by the kind.
     quantities : tuple of Quantity
     life : Life
     over : str
-        Name of a buffer that it may be written over: the pass that begins to write this one reads that one at the pixel
-        itself alone, and no later pass reads it. A pair may be written over one that was made within the frame.
+        The name of a buffer whose memory this one may overwrite. The first pass that writes this buffer must read the
+        other one at its own pixel only, and no later pass may read the other one. A pair may only overwrite a buffer
+        that is written within the same frame.
     spacing : int
-        Pixels of the image from one of its own to the next, along a row and down; 2 holds every second one.
+        The distance in pixels of the image between neighbouring pixels of the buffer, in both directions; 2 means every
+        second pixel of every second row.
     """
 
     name: str
@@ -109,30 +112,30 @@ class Resource:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of its quantities."""
+        """The names of its quantities."""
         return tuple(quantity.name for quantity in self.quantities)
 
     def before(self, name: str) -> tuple[Quantity, ...]:
-        """The quantities in front of one."""
+        """The quantities that come before this one."""
         return self.quantities[: self.names.index(name)]
 
     def first(self, name: str) -> int:
-        """Planes in front of a quantity's."""
+        """The number of planes before this quantity."""
         return sum(quantity.planes for quantity in self.before(name))
 
     def begin(self, name: str) -> int:
-        """Bytes a pixel in front of a quantity's."""
+        """The number of bytes per pixel before this quantity."""
         return sum(quantity.nbytes for quantity in self.before(name))
 
     @property
     def planes(self) -> Planes:
-        """How much memory it takes."""
+        """The number of planes of each width."""
         full = sum(quantity.planes for quantity in self.quantities if quantity.format.nbytes == 4)
         return Planes(full, sum(quantity.planes for quantity in self.quantities) - full)
 
     @property
     def tells_unknown(self) -> bool:
-        """Whether it says by itself where nothing is known of the past."""
+        """Whether a value in the buffer marks pixels of which nothing is known of the past."""
         return any(quantity.unknown is not None for quantity in self.quantities)
 
     @property
@@ -147,7 +150,7 @@ class Resource:
 
 @dataclass(frozen=True)
 class Buffer:
-    """A resource as one frame sees it: its own or, of a pair, that of the frame before."""
+    """A resource as a frame sees it: the one that it writes, or (of a pair) the one that the previous frame wrote."""
 
     resource: Resource
     previous: bool = False
@@ -158,7 +161,7 @@ class Buffer:
 
 @dataclass(frozen=True)
 class Use:
-    """A quantity that a pass needs, and the pixels at which it does."""
+    """A quantity that a pass needs, and the pixels at which the pass needs it."""
 
     quantity: Quantity
     taps: Taps = HERE
@@ -166,14 +169,14 @@ class Use:
 
 @dataclass(frozen=True)
 class Access:
-    """A kernel's argument that is a buffer, and what a pass needs of it in a steady state, with a long history.
+    """A buffer or user's array as a kernel's argument, and the part of it that the pass needs in a steady state.
 
     Parameters
     ----------
     argument : str
         The kernel's name for it.
     of : Buffer or str
-        A name is that of one of the user's arrays: a field of `Frame`, or `OUT`.
+        A string names one of the user's arrays: a field of `Frame`, or `OUT`.
     uses : tuple of Use
     """
 
@@ -183,19 +186,19 @@ class Access:
 
     @property
     def resource(self) -> Resource:
-        """Of a buffer; an array of the user's has none."""
+        """The resource of the buffer; `ValueError` for a user's array."""
         if isinstance(self.of, str):
             raise ValueError(f"{self.argument}: expected a buffer, got the user's {self.of}")
         return self.of.resource
 
 
 def history_of(resource: Resource) -> Buffer:
-    """What a frame finds of a lasting resource when it begins."""
+    """The buffer of a resource that a frame finds when it begins, as the previous frame left it."""
     return Buffer(resource, previous=resource.life is Life.PAIR)
 
 
 def user(name: str, argument: str = "", channels: int = 0) -> Access:
-    """An access to one of the user's arrays, or to so many of its channels."""
+    """An access to one of the user's arrays, or to its first `channels` channels."""
     usual = 3 if name == OUT else max(1, *CHANNELS[name])
     return Access(argument or name, name, (Use(Quantity(name, channels or usual)),))
 
@@ -203,7 +206,7 @@ def user(name: str, argument: str = "", channels: int = 0) -> Access:
 def access(
     resource: Resource, argument: str = "", taps: Mapping[str, Taps] | None = None, *, previous: bool = False
 ) -> Access:
-    """An access to the quantities that `taps` names, or else to all at the pixel itself."""
+    """An access to the quantities that `taps` names; without `taps`, to all quantities at the pixel itself."""
     chosen = dict.fromkeys(resource.names, HERE) if taps is None else taps
     uses = tuple(Use(each, chosen[each.name]) for each in resource.quantities if each.name in chosen)
     usual = f"previous_{resource.name}" if previous else resource.name
@@ -211,7 +214,7 @@ def access(
 
 
 def spacing_of(access: Access) -> int:
-    """Pixels from one to the next of what is accessed."""
+    """The distance in pixels between neighbouring pixels of the buffer or array."""
     return access.of.resource.spacing if isinstance(access.of, Buffer) else 1
 
 
@@ -219,30 +222,32 @@ def spacing_of(access: Access) -> int:
 class Pass:
     """One kernel launch.
 
-    Its arguments are the image's size, that of its coarse buffers if it has any, that of the past if it reads it along
-    motion, then what the fields below name, in their order.
+    The kernel's arguments are the size of the image, the size of its coarse buffers (if it has any), the size of the
+    past (if it reads along motion), and then the arguments that the fields below name, in their order.
 
     Parameters
     ----------
     source : str
         A file in ``kernels/``, without its suffix.
     kernel : str
-        The kernel in it.
+        The name of the kernel in this file.
     scalars : mapping of str to int or float
-        Numbers that stay the same from frame to frame; kernels get a whole one as int, any other as float.
+        Numbers that stay the same from frame to frame. A whole number is passed as int, any other number as float.
     per_frame : tuple of str
-        Numbers that change with the frame, out of `FRAME_SCALARS`; `PAST` for a pass that reads along motion.
+        Numbers that change from frame to frame, out of `FRAME_SCALARS`; `PAST` for a pass that reads along motion.
     arrays : mapping of str to array
         Constants in device memory, such as a network's weights.
     reads, writes : tuple of Access
     rarely : tuple of Taps
-        Pixels at which it also reads any of its buffers, but not in a steady state: where history is short, say.
+        Pixels at which it also reads any of its buffers, but not in a steady state: for example, where history is
+        short.
     operations : float
-        Floating-point operations a pixel that it writes, counted from the equations (`svgf_cl.filters.operations`).
+        Floating-point operations per written pixel, counted from the equations (`svgf_cl.filters.operations`).
     level : int, optional
-        Which of several like it, from 1.
+        The number of this pass among several of the same kernel, from 1.
     row_step : int
-        The kernel deals its rows out so many apart, and wants whole rounds of them.
+        The kernel processes rows that are this many apart one after the other; the work-items fill whole groups of
+        rows.
     """
 
     source: str
@@ -264,14 +269,15 @@ class Pass:
             raise ValueError(f"{self.label}: expected to write every pixel or every so many, got {self._spacings}")
         if self.follows_motion != set(PAST).issubset(self.per_frame):
             raise ValueError(f"{self.label}: expected {' and '.join(PAST)} if it reads along motion, and only then")
-        kept = {name: np.array(values, order="C") for name, values in self.arrays.items()}  # apart from the owner's
+        # copies, which the owner cannot change
+        kept = {name: np.array(values, order="C") for name, values in self.arrays.items()}
         for values in kept.values():
             values.flags.writeable = False
         object.__setattr__(self, "arrays", kept)
 
     @property
     def path(self) -> tuple[str, ...]:
-        """The kernel and, where there are several like it, the level."""
+        """The kernel, and the level if there are several passes of this kernel."""
         return (self.kernel,) if self.level is None else (self.kernel, str(self.level))
 
     @property
@@ -281,17 +287,17 @@ class Pass:
 
     @property
     def accesses(self) -> tuple[Access, ...]:
-        """Reads, then writes."""
+        """All reads, then all writes."""
         return (*self.reads, *self.writes)
 
     @property
     def spacing(self) -> int:
-        """Of the pixels that it writes."""
+        """The spacing of the pixels that it writes."""
         return spacing_of(self.writes[0])
 
     @property
     def coarse_spacing(self) -> int:
-        """Of its buffers that do not hold every pixel; 1 where all do."""
+        """The spacing of those of its buffers that do not hold every pixel; 1 if all of them do."""
         return max(self._spacings)
 
     @property
@@ -305,16 +311,16 @@ class Pass:
         return ("size", *coarse, *(("past_size",) if self.follows_motion else ()))
 
     def taps(self, access: Access) -> tuple[Taps, ...]:
-        """Where it reads one of its accesses, rare taps included."""
+        """The taps of an access, including the rare ones."""
         return (*(use.taps for use in access.uses), *self.rarely)
 
     @property
     def follows_motion(self) -> bool:
-        """Whether it reads the past where pixels were then."""
+        """Whether it reads the previous frame along motion."""
         return any(use.taps.follow_motion for each in self.reads for use in each.uses)
 
     def reach(self, access: Access) -> int:
-        """Pixels of the image from one that it writes to the farthest that it reads of an access around it."""
+        """The distance in pixels of the image to the farthest tap of an access, without taps along motion."""
         steady = max((use.taps.reach for use in access.uses), default=0) * spacing_of(access)
         return max(steady, *(taps.reach for taps in self.rarely), 0)
 
@@ -326,7 +332,7 @@ class Pass:
 
 @dataclass(frozen=True)
 class Pipeline:
-    """The passes of a frame, in order, and the macros of their kernels beside those that follow from the passes."""
+    """The passes of a frame, in order, and the macros that do not follow from the passes."""
 
     passes: tuple[Pass, ...]
     macros: Mapping[str, int] = field(default_factory=dict)
@@ -345,7 +351,7 @@ class Pipeline:
             self._check_over(resource)
 
     def _check_over(self, resource: Resource) -> None:
-        """Raise `ValueError` if a buffer that this one may be written over is read beside the pixel, or later."""
+        """Raise `ValueError` if a pass reads the overwritten buffer at another pixel, or after it was overwritten."""
         first = [Buffer(resource) in {each.of for each in entry.writes} for entry in self.passes].index(True)
         for entry in self.passes[first:]:
             for each in entry.reads:
@@ -359,7 +365,7 @@ class Pipeline:
 
     @cached_property
     def resources(self) -> tuple[Resource, ...]:
-        """All that the passes write, each once, in the order of the first write."""
+        """All resources that the passes write, each once, in the order in which they are first written."""
         written = (each.of.resource for entry in self.passes for each in entry.writes if isinstance(each.of, Buffer))
         return tuple(dict.fromkeys(written))
 
@@ -370,13 +376,13 @@ class Pipeline:
 
     @cached_property
     def fields(self) -> tuple[str, ...]:
-        """The user's arrays that are read."""
+        """The names of the user's arrays that are read."""
         read = (each.of for entry in self.passes for each in entry.reads if isinstance(each.of, str))
         return tuple(dict.fromkeys(read))
 
     @cached_property
     def defines(self) -> dict[str, int]:
-        """Every macro of the kernels that the pipeline decides."""
+        """All macros that the pipeline passes to the kernels."""
         found = dict(self.macros)
         for resource in self.resources:
             for name, value in resource.defines.items():
@@ -392,28 +398,28 @@ class Pipeline:
 
     @cached_property
     def user_nbytes(self) -> dict[str, int]:
-        """Bytes a pixel of each of the user's arrays, the result included."""
+        """Bytes per pixel of each of the user's arrays, including the result."""
         accesses = (each for entry in self.passes for each in entry.accesses)
         return {each.of: each.uses[0].quantity.nbytes for each in accesses if isinstance(each.of, str)}
 
     @property
     def widest(self) -> int:
-        """Planes of the largest buffer."""
+        """The number of planes of the largest buffer."""
         return max(resource.planes.count for resource in self.resources)
 
     @property
     def reach(self) -> int:
-        """Pixels by which the widest taps lie off their pixel."""
+        """The distance in pixels to the farthest tap of any pass."""
         return max(taps.reach for entry in self.passes for each in entry.reads for taps in entry.taps(each))
 
     def past_of(self, entry: Pass) -> tuple[Access, ...]:
-        """What a pass reads of what the previous frame left; none is to the user's arrays."""
+        """The accesses of a pass to buffers that the previous frame wrote; user's arrays are not among them."""
         written = {each.of for earlier in self.passes[: self.passes.index(entry)] for each in earlier.writes}
         lasting = {history_of(resource) for resource in self.lasting}
         return tuple(each for each in entry.reads if each.of in lasting - written)
 
     def shown(self) -> Iterator[tuple[str, Resource, Quantity]]:
-        """Every stage: its name, and what it shows of which resource; in the order in which passes write them."""
+        """The name, resource and quantity of every stage, in the order in which the passes write them."""
         for entry in self.passes:
             for each in entry.writes:
                 for use in each.uses:
@@ -421,7 +427,7 @@ class Pipeline:
                         yield use.quantity.stage, each.of.resource, use.quantity
 
     def differs_in_scalars_alone(self, other: Pipeline) -> bool:
-        """Whether it shares kernels, memory and launches with another."""
+        """Whether another pipeline differs in numbers only, so that kernels, memory and launches are the same."""
         return self._without_scalars() == other._without_scalars() and all(
             same_arrays(mine.arrays, others.arrays) for mine, others in zip(self.passes, other.passes, strict=True)
         )
@@ -432,7 +438,7 @@ class Pipeline:
 
 
 def same_arrays(a: Mapping[str, np.ndarray], b: Mapping[str, np.ndarray]) -> bool:
-    """Whether arrays are the same by name, type, shape and every bit."""
+    """Whether arrays have the same names, types, shapes and bits."""
     return list(a) == list(b) and all(
         a[name].dtype == b[name].dtype and a[name].shape == b[name].shape and a[name].tobytes() == b[name].tobytes()
         for name in a

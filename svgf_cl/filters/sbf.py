@@ -1,4 +1,7 @@
-"""SBF: the scale of a bilateral filter by Stein's unbiased risk estimate (Li et al. 2012), over accumulated light."""
+"""SBF: chooses the scale of a bilateral filter by Stein's unbiased risk estimate (Li et al. 2012).
+
+It filters accumulated light.
+"""
 
 from __future__ import annotations
 
@@ -15,9 +18,9 @@ from svgf_cl.filters.signals import Inputs
 from svgf_cl.filters.taps import HERE, grid
 from svgf_cl.settings import documented, number
 
-SIGMAS = (1.0, 2.0, 4.0, 8.0)  # pixels, of the scales
+SIGMAS = (1.0, 2.0, 4.0, 8.0)  # the standard deviations of the scales, in pixels
 WINDOW = 16  # pixels to either side: two standard deviations of the largest scale
-SMOOTHED = grid(3)  # pixels over which the risk is smoothed
+SMOOTHED = grid(3)  # the pixels over which the risk is smoothed
 
 
 @documented
@@ -25,8 +28,8 @@ SMOOTHED = grid(3)  # pixels over which the risk is smoothed
 class Sbf(BilateralFilter):
     """Parameters of the SURE-based filter (Li et al. 2012). Equations: docs/algorithm.md, section 8.
 
-    Light is filtered at four scales, and each pixel takes the one whose error is estimated to be least. For comparison:
-    it takes six times as long as SVGF.
+    Light is filtered at four scales, and each pixel takes the scale with the least estimated error. SBF is for
+    comparison: it takes six times as long as SVGF.
     """
 
     name: ClassVar[str] = "sbf"
@@ -45,7 +48,7 @@ class Sbf(BilateralFilter):
     )
 
     def pipeline(self, inputs: Inputs) -> Pipeline:
-        """The passes of a frame: accumulation, then the window at all scales, then the choice among them."""
+        """The passes of a frame: accumulation, then the window at all scales, then the choice of a scale."""
         candidates = tuple(self.candidate(inputs, scale) for scale in range(1, len(SIGMAS) + 1))
         passes = (
             *self.first_passes(inputs),

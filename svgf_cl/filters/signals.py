@@ -1,4 +1,4 @@
-"""The parts of a frame's radiance that are filtered apart, and which other fields a frame has."""
+"""The parts of the light that are filtered separately (signals), and the fields of a frame."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from svgf_cl.frame import Frame
 
 @dataclass(frozen=True)
 class Signal:
-    """Radiance that is filtered on its own.
+    """A part of the light that is filtered separately.
 
     Parameters
     ----------
     name : str
-        Kernels know its number by the macro SIGNAL_<NAME>.
+        Kernels know the number of the signal by the macro SIGNAL_<NAME>.
     field : str
-        Field of `Frame` that it comes from.
+        The field of `Frame` that holds it.
     divided_by : str or None
-        Field that it is divided by before the filter, and multiplied by after it.
+        The field that it is divided by before the filter, and multiplied by afterwards.
     holds_emission : bool
-        Whether directly visible emission is part of the field, so that it is taken out first.
+        Whether the field contains directly visible emission, which is subtracted before the filter.
     carries : tuple of str
-        What temporal accumulation keeps of it beside its light: quantities of the moments, in their order.
+        The quantities that temporal accumulation keeps of it in addition to its light, in the order of the moments.
     """
 
     name: str
@@ -37,13 +37,13 @@ COLOR = Signal("color", field="color", divided_by="albedo", holds_emission=True)
 DIRECT = Signal("direct", field="direct", divided_by="albedo")
 INDIRECT = Signal("indirect", field="indirect", divided_by="albedo")
 
-# How radiance may be split, the finest first: a frame is filtered by the first split whose fields it has.
+# All ways to split radiance, the finest first. A frame is filtered by the first split for which it has all fields.
 SPLITS: tuple[tuple[Signal, ...], ...] = ((DIRECT, INDIRECT), (COLOR,))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Inputs:
-    """What frames supply; kernels are built for exactly these fields, so what is absent costs nothing.
+    """The fields that frames have. Kernels are built for exactly these fields, so a missing field costs nothing.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ class Inputs:
 
     @classmethod
     def of(cls, frame: Frame) -> Inputs:
-        """What `frame` supplies."""
+        """The fields of `frame`."""
         given = frame.present()
         return cls(
             signals=next(split for split in SPLITS if all(signal.field in given for signal in split)),
@@ -82,24 +82,24 @@ class Inputs:
 
     @classmethod
     def every(cls) -> Inputs:
-        """All that frames can supply at once, in the finest split."""
+        """All fields that a frame can have at once, with the finest split."""
         return cls(signals=max(SPLITS, key=len), motion=3, albedo=True, emission=True, id=True)
 
     @property
     def fields(self) -> tuple[str, ...]:
-        """Names of the frame's fields."""
+        """The names of the fields."""
         optional = [name for name in ("albedo", "emission", "id") if getattr(self, name)]
         return (*(signal.field for signal in self.signals), "normal", "depth", "motion", *optional)
 
     @property
     def emission_signal(self) -> int:
-        """Number of the signal that emission has to be taken out of; -1 if of none."""
+        """The number of the signal from which emission is subtracted; -1 if there is none."""
         holders = [number for number, signal in enumerate(self.signals) if signal.holds_emission and self.emission]
         return holders[0] if holders else -1
 
     @property
     def divides_by_albedo(self) -> bool:
-        """Whether light is divided by albedo; kernels divide all signals of a split, or none."""
+        """Whether light is divided by albedo; kernels divide either all signals of a split or none."""
         divisors = {signal.divided_by for signal in self.signals}
         if len(divisors) > 1 or not divisors <= {"albedo", None}:
             raise ValueError(f"expected signals that are all divided by albedo or none of them, got {divisors}")
@@ -107,7 +107,7 @@ class Inputs:
 
     @property
     def defines(self) -> dict[str, int]:
-        """The kernels' macros."""
+        """The macros of the kernels."""
         numbers = {f"SIGNAL_{signal.name.upper()}": number for number, signal in enumerate(self.signals)}
         return numbers | {
             "SIGNALS": len(self.signals),

@@ -1,4 +1,4 @@
-"""What filters that average light over space share: which neighbours show one surface, and how much light varies.
+"""Filters that average light over space: weights between surfaces, and the variance of light.
 
 Equations: docs/algorithm.md, sections 3 and 4.
 """
@@ -49,12 +49,12 @@ class SpatialFilter(TemporalFilter):
 
     @property
     def macros(self) -> dict[str, int]:
-        """What these settings decide when kernels are built."""
+        """The macros that these settings set."""
         return super().macros | {"FAST": int(self.precision == "fast")}
 
     @property
     def surface_scalars(self) -> dict[str, Number]:
-        """What tells surfaces apart, as kernels take it."""
+        """The settings by which surfaces are compared, as arguments of kernels."""
         names = ("sigma_depth", "sigma_normal", "albedo_threshold", "depth_slope_floor")
         return {name: getattr(self, name) for name in names}
 
@@ -66,8 +66,8 @@ class SpatialFilter(TemporalFilter):
         return Resource(name, "illumination", (self.color(inputs, name), spread), life, over)
 
     def variance_pass(self, inputs: Inputs, accumulated: Resource) -> Pass:
-        """Variance from the moments or, where history is short, from the neighbours too (section 3)."""
-        guide = self.guide(inputs)  # read where history is short alone, which a steady state does not count
+        """The variance from the moments or, where history is short, also from the neighbours (section 3)."""
+        guide = self.guide(inputs)  # read only where history is short, which does not count in a steady state
         return Pass(
             "variance",
             "variance",
@@ -75,5 +75,5 @@ class SpatialFilter(TemporalFilter):
             reads=(access(guide, taps={}), access(self.moments(inputs), taps={"length": HERE, "variance": HERE})),
             writes=(access(accumulated, "illumination", {"variance": HERE}),),
             rarely=(grid(3),),  # where history is short
-            operations=2 + len(inputs.signals),  # a choice by the length, and by whether anything was hit
+            operations=2 + len(inputs.signals),  # choices by the length of the history, and by hit or miss
         )

@@ -1,4 +1,4 @@
-"""What lies in the device's planes between the passes, as images: for debugging and for tests against the oracle."""
+"""Intermediate results in the device's planes as images, for debugging and for tests against the oracle."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from svgf_cl.frame import LUMINANCE
 
 @dataclass(frozen=True)
 class Stage:
-    """A quantity of a resource."""
+    """A stage: one quantity of a resource, shown as an image."""
 
     resource: Resource
     quantity: Quantity
 
     def image(self, planes: np.ndarray) -> np.ndarray:
-        """(n, H, W) planes of the quantity's format -> ([signals,] H, W[, channels]) float32, a copy.
+        """Convert planes (n, H, W) of the whole resource to an image ([signals,] H, W[, channels]), float32, a copy.
 
-        `planes` are those of the whole resource, as if all were of that format.
+        All planes must have the type of the quantity's format.
         """
         first = self.resource.begin(self.quantity.name) // self.quantity.format.nbytes
         return self.decoded(planes[first : first + self.quantity.planes])
 
     def decoded(self, planes: np.ndarray) -> np.ndarray:
-        """The same of the planes of the quantity alone."""
+        """Convert the planes of this quantity alone."""
         quantity = self.quantity
         stack = planes.reshape(-1, quantity.channels, *planes.shape[1:])
         images = quantity.format.decoded(np.moveaxis(stack, 1, -1))
@@ -39,5 +39,5 @@ class Stage:
 
 
 def stages(pipeline: Pipeline) -> dict[str, Stage]:
-    """Every stage of a pipeline, by name, in the order of its passes."""
+    """All stages of a pipeline by name, in the order of its passes."""
     return {name: Stage(resource, quantity) for name, resource, quantity in pipeline.shown()}

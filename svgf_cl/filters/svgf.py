@@ -33,7 +33,7 @@ class Settings(WaveletFilter):
     )
 
     def pipeline(self, inputs: Inputs) -> Pipeline:
-        """The passes of a frame (figure 1 of the paper): what the first level makes is the next frame's history."""
+        """The passes of a frame (figure 1 of the paper); the first level's output is the next frame's history."""
         accumulated = self.illumination(inputs, "accumulated", variance="variance", over="demodulated")
         history = self.illumination(inputs, "level_1", Life.HISTORY)
         others = [self.illumination(inputs, f"level_{level}") for level in range(2, self.iterations + 1)]

@@ -1,4 +1,4 @@
-"""Which pixels around its own a pass reads: what it loads follows from that, and how wide an image's halo must be."""
+"""The pixels around its own that a pass reads; the halo of an image and the loads of a pass follow from them."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ class Taps:
     Parameters
     ----------
     offsets : frozenset of (int, int), pixels
-        (dx, dy) from its own pixel, or from that at or above and left of where the pixel was in the previous frame.
+        (dx, dy) from the pixel itself; if the taps follow motion, from the pixel at or above and left of the previous
+        position.
     follow_motion : bool
-        Whether they lie around where the pixel was, so anywhere in the image.
+        Whether the taps are around the pixel's position in the previous frame, which may be anywhere in the image.
     """
 
     offsets: frozenset[Offset]
@@ -28,7 +29,10 @@ class Taps:
 
     @property
     def reach(self) -> int:
-        """Pixels along a row or a column to the farthest; 0 for taps that follow motion, as those are clamped."""
+        """The distance in pixels to the farthest tap, along a row or a column; 0 if taps follow motion.
+
+        Taps that follow motion are clamped into the image.
+        """
         return 0 if self.follow_motion else max(max(abs(dx), abs(dy)) for dx, dy in self.offsets)
 
 
@@ -39,12 +43,12 @@ def square(coordinates: Iterable[int]) -> frozenset[Offset]:
 
 
 def grid(radius: int, step: int = 1) -> Taps:
-    """The (2 radius + 1)^2 pixels around the own one, `step` apart."""
+    """The (2 radius + 1)^2 pixels around the pixel itself, including it, `step` apart."""
     return Taps(square(range(-radius * step, radius * step + 1, step)))
 
 
 def footprint(width: int) -> Taps:
-    """The width x width pixels, an even number, around where the pixel was in the previous frame."""
+    """The width x width pixels around the position in the previous frame; `width` is even."""
     return Taps(square(range(1 - width // 2, width // 2 + 1)), follow_motion=True)
 
 

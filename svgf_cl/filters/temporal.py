@@ -1,4 +1,4 @@
-"""What filters share that accumulate light over time: settings, buffers and passes, from the first to antialiasing.
+"""Filters that accumulate light over time: their settings, buffers and passes, from demodulation to antialiasing.
 
 Equations: docs/algorithm.md, sections 1, 2, 5 and 6.
 """
@@ -22,7 +22,7 @@ from svgf_cl.settings import number, switch
 
 Plane = NDArray[np.float32]
 
-UNKNOWN = -1e30  # in TAA's history before the first frame: less than KNOWN of taa.cl, and finite, so 0 times it is 0
+UNKNOWN = -1e30  # TAA's history before the first frame; less than KNOWN of taa.cl, and finite, so that 0 times it is 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,21 +100,21 @@ class TemporalFilter(Filter):
 
     @property
     def macros(self) -> dict[str, int]:
-        """What these settings decide when kernels are built."""
+        """The macros that these settings set."""
         return {"TAA": int(self.taa), "HALF_GUIDES": int(self.half_guides), "HALF_HISTORY": int(self.half_history)}
 
     @property
     def light_format(self) -> Format:
-        """Of light, its mean, and the length of its history."""
+        """The format of light, of its mean, and of the length of its history."""
         return Format.HALF if self.half_history else Format.FLOAT
 
     @property
     def variance_format(self) -> Format:
-        """Of a variance of light."""
+        """The format of a variance of light."""
         return Format.ROOT if self.half_history else Format.FLOAT
 
     def guide(self, inputs: Inputs) -> Resource:
-        """The surface that a pixel shows; depth is 0 at a miss."""
+        """The surface that a pixel shows; its depth is 0 at a miss."""
         depth = Quantity("depth", stage="depth")
         id_ = (Quantity("id"),) if inputs.id else ()
         albedo = (Quantity("albedo"),) if inputs.divides_by_albedo else ()
@@ -130,7 +130,7 @@ class TemporalFilter(Filter):
         return Resource("demodulated", "illumination", (self.color(inputs, "demodulated"),))
 
     def moments(self, inputs: Inputs) -> Resource:
-        """Length of the history in frames, and what each signal carries along."""
+        """The length of the history in frames, and the moments of each signal's luminance."""
         known = {"mean": (self.light_format, "mean"), "variance": (self.variance_format, "moment_variance")}
         carried = {signal.carries for signal in inputs.signals}
         if len(carried) > 1:
@@ -140,7 +140,7 @@ class TemporalFilter(Filter):
         return Resource("moments", "moments", (length, *quantities), Life.PAIR)
 
     def demodulate_pass(self, inputs: Inputs) -> Pass:
-        """The user's arrays to planes: made safe, and light divided by albedo."""
+        """Replace invalid values in the user's arrays, divide light by albedo, and write planes."""
         light = tuple(user(signal.field, f"radiance_{number}") for number, signal in enumerate(inputs.signals))
         given = (("albedo", inputs.divides_by_albedo), ("emission", inputs.emission_signal >= 0))
         optional = [name for name, read in given if read]
@@ -154,7 +154,7 @@ class TemporalFilter(Filter):
         )
 
     def temporal_pass(self, inputs: Inputs, history: Resource, accumulated: Resource, *, alpha_moments: float) -> Pass:
-        """Accumulation along motion: `history` of the previous frame and new light become `accumulated`."""
+        """Accumulate along motion: `history` of the previous frame and the new light become `accumulated`."""
         guide, moments = self.guide(inputs), self.moments(inputs)
         taps = footprint(2)
         return Pass(
@@ -177,12 +177,12 @@ class TemporalFilter(Filter):
                 access(moments, taps=dict.fromkeys(moments.names, taps), previous=True),
             ),
             writes=(access(accumulated, "accumulated", {"color": HERE}), access(moments)),
-            rarely=(footprint(4),),  # thin geometry: the nine pixels around the nearest
+            rarely=(footprint(4),),  # for thin geometry: the nine pixels around the nearest one
             operations=operations.temporal(inputs),
         )
 
     def last_passes(self, inputs: Inputs, filtered: Resource) -> tuple[Pass, ...]:
-        """Filtered light to the user's array: times albedo, and antialiased if so set."""
+        """Multiply filtered light by albedo, and write the user's array; antialias first, if `taa` is on."""
         given = (("albedo", inputs.divides_by_albedo), ("emission", inputs.emission))
         optional = [name for name, read in given if read]
         picture = Resource("modulated", "picture", (Quantity("color", 3, stage="modulated"),))
@@ -196,18 +196,19 @@ class TemporalFilter(Filter):
         return (modulate, self.taa_pass(inputs, picture)) if self.taa else (modulate,)
 
     def age(self, inputs: Inputs) -> Access:
-        """What antialiasing wants to know of the past: how long the history is."""
+        """The length of the history, which antialiasing reads."""
         return access(self.moments(inputs), taps={"length": grid(1)})
 
     def uncertainty(self, stage: Callable[[str], Plane]) -> Plane:
-        """Variance of the light that is kept of each pixel, in units of that of a sample, (H, W).
+        """The variance of each pixel's accumulated light, in units of the variance of a sample, (H, W).
 
         Parameters
         ----------
         stage : callable
             Reads a stage of the last frame, as `Denoiser.stage` does.
         """
-        least = self.alpha_color / (2 - self.alpha_color)  # that of a mean whose newest sample always counts alpha
+        # the variance of a mean in which the newest sample always has the weight alpha
+        least = self.alpha_color / (2 - self.alpha_color)
         variance: Plane = np.maximum(1 / np.maximum(stage("history_length"), 1), np.float32(least))
         return variance
 
@@ -228,6 +229,6 @@ class TemporalFilter(Filter):
                 access(antialiased, "history", {"color": footprint(4)}, previous=True),
             ),
             writes=(access(antialiased, "next_history"), user(OUT)),
-            rarely=(grid(1),),  # motion, beside an edge
+            rarely=(grid(1),),  # motion of a neighbour, beside an edge
             operations=operations.taa(filters_pixels=self.pixel_filter > 0),
         )

@@ -1,4 +1,4 @@
-"""What edge-avoiding a-trous wavelet filters share: their levels.
+"""Filters with a-trous levels (edge-avoiding wavelets).
 
 Equations: docs/algorithm.md, section 4; Dammertz et al. 2010.
 """
@@ -39,12 +39,12 @@ class WaveletFilter(SpatialFilter):
 
     @property
     def radius(self) -> int:
-        """Taps of a level to either side of the middle one."""
+        """The number of taps of a level on either side of the centre."""
         return {"3x3": 1, "5x5": 2}[self.taps]
 
     @property
     def macros(self) -> dict[str, int]:
-        """What these settings decide when kernels are built."""
+        """The macros that these settings set."""
         return super().macros | {"RADIUS": self.radius}
 
     def levels(
@@ -55,16 +55,18 @@ class WaveletFilter(SpatialFilter):
         light: LightOperations,
         guidance: Sequence[Resource] = (),
     ) -> Iterator[Pass]:
-        """The passes from each of `steps` to the next; `scalars` beside those that all wavelet filters have.
+        """The passes of the levels.
 
-        `guidance`: what each level compares light by, in place of the light alone.
+        `steps` are the input of the first level and the outputs of all levels. `scalars` are arguments in addition to
+        those that all wavelet filters have. `guidance` are the buffers by which the levels compare light, in addition
+        to the light itself: the first for level 1, the next one for level 2, and so on.
         """
         near = grid(1)
         guide = self.guide(inputs)
         for level, (source, target) in enumerate(pairwise(steps), start=1):
             step = 2 ** (level - 1)
             taps = grid(self.radius, step)
-            # The variance is smoothed over the nearest neighbours too, and the depth's slope is taken from them.
+            # The variance is smoothed over the nearest neighbours, and the slope of depth is computed from them.
             read = {name: taps | near if name == "variance" else taps for name in target.names}
             surface = {name: taps | near if name == "depth" else taps for name in guide.names if name != "id"}
             yield Pass(

@@ -1,4 +1,4 @@
-"""Filters restated in float64 NumPy, one file each: what kernels are held against."""
+"""The filters in float64 NumPy, one file each; the kernels are compared with them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Float64 oracle of accumulation over time alone: `svgf_cl.filters.accumulation` restated in NumPy."""
+"""Float64 oracle of accumulation over time alone (`svgf_cl.filters.accumulation`), in NumPy."""
 
 from __future__ import annotations
 
@@ -15,6 +15,6 @@ class Oracle(TemporalOracle[Accumulation]):
     history: ClassVar[str] = "accumulated"
 
     def spatial(self, now: Stages, guides: Guides) -> Generator[Made, None, str]:
-        """Nothing."""
+        """Yield nothing, because there is no spatial part."""
         yield from ()
         return "accumulated"

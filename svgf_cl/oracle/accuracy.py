@@ -1,4 +1,4 @@
-"""How far each kernel is from the oracle, when both are given the very same float32 inputs."""
+"""The error of each kernel, compared with the oracle, if both get exactly the same float32 input."""
 
 from __future__ import annotations
 
@@ -21,26 +21,26 @@ from svgf_cl.oracle.temporal import Past, seen_guides
 
 Single = NDArray[np.float32]
 
-# A pixel further off than this was decided otherwise (a tap accepted or refused within rounding of a threshold).
+# A pixel with a larger error was decided differently: a tap was accepted or refused because of rounding.
 DECISION = 1e-3
 
 
 @dataclass(frozen=True)
 class Deviation:
-    """How far one stage is off the oracle, over all pixels of all frames.
+    """The error of one stage compared with the oracle, over all pixels of all frames.
 
     Parameters
     ----------
     kernel : str
-        Whose work the stage is.
+        The kernel that makes the stage.
     absolute : float
-        Largest error of the pixels decided alike, in the stage's own unit.
+        Largest error of the pixels that were decided alike, in the unit of the stage.
     relative : float
-        The largest as described at `svgf_cl.oracle.rounding.SCALE_SHARE`.
+        Largest relative error, as `svgf_cl.oracle.rounding.SCALE_SHARE` describes it.
     ulps : float
-        The largest in units in the last place of what the relative error counts against, as float32.
+        Largest error in units in the last place of the relative error's denominator, as float32.
     decided_otherwise : float
-        Share of pixels whose relative error is beyond `DECISION`.
+        Share of pixels with a relative error above `DECISION`.
     """
 
     kernel: str
@@ -51,7 +51,10 @@ class Deviation:
 
     @classmethod
     def of(cls, kernel: str, error: Array, size: Array) -> Deviation:
-        """Condense |got - expected| of all pixels; `size` is what the relative error counts against, of like shape."""
+        """Summarise |got - expected| of all pixels.
+
+        `size`, of the same shape, is the denominator of the relative error.
+        """
         alike = error / size <= DECISION
         absolute, relative, ulps = (
             float((error / unit).max(where=alike, initial=0.0))
@@ -63,12 +66,12 @@ class Deviation:
 def deviations(
     frames: Iterable[Frame], settings: Filter | None = None, queue: cl.CommandQueue | None = None
 ) -> dict[str, Deviation]:
-    """Denoise a sequence on the device and hold every kernel, one at a time, against the oracle.
+    """Denoise a sequence on the device, and compare every kernel, one at a time, with the oracle.
 
     Parameters
     ----------
     frames : iterable of Frame
-        All of one size, numpy arrays.
+        Frames of one size, of numpy arrays.
     settings : Filter, optional
     queue : pyopencl.CommandQueue, optional
 
@@ -90,7 +93,7 @@ def deviations(
         for kernel, made in oracle_of(settings, frame.shape).kernels(frame, now, past):
             for stage, expected in made.items():
                 size = largest_channel(expected) if stage in colours else np.abs(expected)
-                if (expected < 0).any():  # a difference, of what is as large as it is on average
+                if (expected < 0).any():  # a difference: add the mean, because its terms may be much larger than itself
                     size = size + size.mean()
                 size = counted_against(size)
                 error = np.abs(now[stage] - expected)
@@ -100,12 +103,12 @@ def deviations(
 
 
 def stages_of(den: Denoiser) -> dict[str, Single]:
-    """Every stage of a denoiser's last frame."""
+    """All stages of a denoiser's last frame."""
     return {name: den.stage(name) for name in den.stages}
 
 
 def worst(found: Sequence[Deviation]) -> Deviation:
-    """The largest errors of a kernel's stages or frames, and the mean share of pixels that were decided otherwise."""
+    """The largest errors over several stages or frames of a kernel, and the mean of `decided_otherwise`."""
     return Deviation(
         found[0].kernel,
         absolute=max(deviation.absolute for deviation in found),
@@ -116,5 +119,5 @@ def worst(found: Sequence[Deviation]) -> Deviation:
 
 
 def wide(values: Single) -> Array:
-    """float32 to float64."""
+    """Convert float32 to float64."""
     return values.astype(np.float64)

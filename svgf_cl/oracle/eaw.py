@@ -1,4 +1,4 @@
-"""Float64 oracle of EAW: `svgf_cl.filters.eaw` restated in NumPy."""
+"""Float64 oracle of EAW (`svgf_cl.filters.eaw`), in NumPy."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def atrous(illumination: Array, guides: Guides, level: int, settings: Eaw) -> Ar
 
     Returns
     -------
-    illumination : as given, filtered.
+    illumination : filtered, of the same shape.
     """
     step = 2 ** (level - 1)
     gradient = depth_gradient(guides.depth)
@@ -51,7 +51,7 @@ class Oracle(TemporalOracle[Eaw]):
     history: ClassVar[str] = "accumulated"
 
     def spatial(self, now: Stages, guides: Guides) -> Generator[Made, None, str]:
-        """The levels."""
+        """Yield the levels."""
         source = "accumulated"
         for level in range(1, self.settings.iterations + 1):
             target = f"level_{level}"

@@ -1,6 +1,6 @@
-"""Float64 oracle of Kalman: `svgf_cl.filters.kalman` restated in NumPy. Section 7 of docs/algorithm.md.
+"""Float64 oracle of Kalman (`svgf_cl.filters.kalman`), in NumPy: section 7 of docs/algorithm.md.
 
-What every second pixel of every second row has lies in arrays of shape (ceil(H / 2), ceil(W / 2)), "(h, w)" below.
+Arrays of every second pixel of every second row have the shape (ceil(H / 2), ceil(W / 2)), which is "(h, w)" below.
 """
 
 from __future__ import annotations
@@ -17,26 +17,26 @@ from svgf_cl.oracle.taps import GAUSSIAN, Array, Offset, depth_gradient, luminan
 from svgf_cl.oracle.temporal import LENGTH_MAX, FilterOracle, Guides, Made, Past, Stages, footprint
 
 RESIDUAL_GAIN = 0.3
-LEAST_SPREAD = 1e-3  # of a residual, relative to S
-CORRELATED = {2: 1.0, 3: 1.49, 4: 2.54}  # by the pass
-STEPS = {2: 1, 3: 2, 4: 4}  # by the pass, in places of the coarse grid
+LEAST_SPREAD = 1e-3  # the least deviation of a residual, relative to S
+CORRELATED = {2: 1.0, 3: 1.49, 4: 2.54}  # by the number of the pass
+STEPS = {2: 1, 3: 2, 4: 4}  # by the number of the pass, in coarse pixels
 DOUBT_OF_CHANGE, RELATIVE_DOUBT, MOST_DOUBT = 4.0, 1e-5, 1e3
-ENOUGH_AROUND = 1e-3  # of the weights of the even pixels
+ENOUGH_AROUND = 1e-3  # the least sum of the weights of the coarse pixels
 SHORT_HISTORY, SHARE_OF_VARIANCE = 0.5, 0.5
 UNKNOWN = -1.0
-NOTHING_KNOWN = 1e9  # in place of a residual
-CALIBRATION = 3.0  # of the standard error
+NOTHING_KNOWN = 1e9  # the residual where nothing is known
+CALIBRATION = 3.0  # factor of the standard error
 LEAST_DIVISOR = 1e-30
 
 EVERY_SECOND = np.s_[..., ::2, ::2]
 BLOCK = [(dx, dy) for dy in (0, 1) for dx in (0, 1)]
-SPLINE = [((dx, dy), 0.5 ** (abs(dx) + abs(dy))) for dx, dy in square(1)]  # (1/2, 1, 1/2) both ways
+SPLINE = [((dx, dy), 0.5 ** (abs(dx) + abs(dy))) for dx, dy in square(1)]  # (1/2, 1, 1/2) along both axes
 
-Tap = tuple[Offset, float]  # with its coefficient
+Tap = tuple[Offset, float]  # an offset and its coefficient
 
 
 def predict(now: Stages, guides: Guides, past: Past | None, settings: Kalman) -> dict[str, Array]:
-    """What was known of the light, moved along motion, and how the new light differs from it."""
+    """Move the state of the previous frame along motion, and compare the new light with it."""
     light = now["demodulated"]
     predicted = {name: np.zeros(light.shape[:-1]) for name in ("spread", "inverse_count", "tone", "luminance")}
     color, before, known = np.zeros_like(light), np.zeros(light.shape[:-1]), np.zeros(guides.depth.shape, bool)
@@ -57,17 +57,17 @@ def predict(now: Stages, guides: Guides, past: Past | None, settings: Kalman) ->
 
 
 def known_depth(now: Stages, guides: Guides) -> Array:
-    """Depth where something is known of the light, else 0."""
+    """Depth where something is known of the light, otherwise 0."""
     return np.where(now["innovation_residual"][0] < NOTHING_KNOWN, guides.depth, 0)
 
 
 def change_tolerance(settings: Kalman) -> Tolerance:
-    """How different neighbours may be in the test."""
+    """The tolerances by which the test compares surfaces."""
     return Tolerance(settings.change_sigma_depth, settings.change_sigma_normal, settings.depth_slope_floor)
 
 
 def mean_over(taps: Iterable[Tap], values: Array, u: Array, facets: Facets, settings: Kalman) -> tuple[Array, Array]:
-    """Means of `values` (S, H, W, n) and the share u (H, W) of a sample's variance, over taps by their surface."""
+    """Means over taps of one surface: of `values` (S, H, W, n), and of the share u (H, W) of a sample's variance."""
     sums, squares, total = np.zeros_like(values), np.zeros_like(u), np.zeros_like(u)
     for offset, coefficient in taps:
         y, x, _ = shifted(offset, u.shape)
@@ -86,7 +86,7 @@ def innovations(now: Stages) -> Array:
 
 
 def named(stage: str, means: Array, u: Array) -> dict[str, Array]:
-    """The stages of one pass of the test, of its means (S, h, w, 6): d, r, e and f."""
+    """The stages of one pass of the test, from its means (S, h, w, 6): d, r, e and f."""
     square_, residual, residual_square = np.moveaxis(means[..., 3:], -1, 0)
     return {
         f"{stage}_share": u,
@@ -98,13 +98,13 @@ def named(stage: str, means: Array, u: Array) -> dict[str, Array]:
 
 
 def stacked(now: Stages, stage: str) -> Array:
-    """What `named` took apart."""
+    """The means that `named` split into stages."""
     others = np.stack([now[f"{stage}_{name}"] for name in ("square", "residual", "residual_square")], axis=-1)
     return np.concatenate((now[stage], others), axis=-1)
 
 
 def innovation_mean(now: Stages, guides: Guides, settings: Kalman) -> dict[str, Array]:
-    """Pass 1 of the test, from all pixels to every second one."""
+    """Pass 1 of the test: means at every second pixel of every second row."""
     facets = Facets(known_depth(now, guides), guides.normal, depth_gradient(guides.depth))
     taps = [(offset, 1.0) for offset in BLOCK]
     means, u = mean_over(taps, innovations(now), np.ones(guides.depth.shape), facets, settings)
@@ -125,19 +125,19 @@ def coarser_mean(now: Stages, number: int, settings: Kalman) -> tuple[Array, Arr
 
 
 def believed(off: Array, variance: Array, share: Array, threshold: float) -> Array:
-    """b: how much of a mean difference is believed."""
+    """b: the share of a mean difference that counts as a change."""
     rest = (1 - share) * off
     significance = np.maximum(rest**2 / np.maximum(variance * share, LEAST_DIVISOR), LEAST_DIVISOR)
     return np.maximum(1 - threshold**2 / significance, 0)
 
 
 def spread_over_space(means: Array) -> Array:
-    """R of means (..., 6)."""
+    """R, computed from means (..., 6)."""
     return np.maximum(means[..., 3] - luminance(means[..., :3]) ** 2, 0)
 
 
 def detect(now: Stages, settings: Kalman) -> dict[str, Array]:
-    """Pass 4, and the test from coarse to fine."""
+    """Pass 4, and the test from coarse to fine scales."""
     found = {4: coarser_mean(now, 4, settings)}
     found |= {number: (stacked(now, f"change_{number}"), now[f"change_{number}_share"]) for number in (3, 2)}
     least = (LEAST_SPREAD * now["predicted_tone"][EVERY_SECOND]) ** 2
@@ -158,13 +158,17 @@ def detect(now: Stages, settings: Kalman) -> dict[str, Array]:
 
 
 def correction(now: Stages, guides: Guides, settings: Kalman) -> Array:
-    """A, B, q and R of every pixel, (S, H, W, 6): from the even pixels around, or where none is like it directly."""
+    """A, B, q and R of every pixel, (S, H, W, 6).
+
+    They are computed from the coarse pixels around it, or by `direct` if none of these is on its surface.
+    """
     shape = guides.depth.shape
     parts = [now[f"correction_{name}"][..., None] for name in ("residual", "doubt", "spread")]
     coarse = np.concatenate((now["correction"], *parts), axis=-1)
     facets = Facets(known_depth(now, guides), guides.normal, depth_gradient(guides.depth))
     total, sums = np.zeros(shape), np.zeros((len(coarse), *shape, 6))
-    for offset, h in SPLINE:  # of odd coordinates the two beside have half the weight each, of even ones one has all
+    # at odd coordinates both coarse neighbours have half the weight; at even ones, one has all of it
+    for offset, h in SPLINE:
         y, x, _ = shifted(offset, shape)
         w = np.where((x % 2 == 0) & (y % 2 == 0), h * facet_weight(facets, offset, change_tolerance(settings)), 0)
         total += w
@@ -174,7 +178,7 @@ def correction(now: Stages, guides: Guides, settings: Kalman) -> Array:
 
 
 def direct(now: Stages, facets: Facets, settings: Kalman) -> Array:
-    """A, B, q and R of every pixel, (S, H, W, 6), by a test over the 7x7 pixels around it alone."""
+    """A, B, q and R of every pixel, (S, H, W, 6), from a test over the 7x7 pixels around it."""
     taps = [(offset, 1.0) for offset in square(3)]
     means, share = mean_over(taps, innovations(now), np.ones(facets.depth.shape), facets, settings)
     e, f = means[..., 4], means[..., 5]
@@ -185,7 +189,7 @@ def direct(now: Stages, facets: Facets, settings: Kalman) -> Array:
 
 
 def not_negative(color: Array) -> Array:
-    """Red, luminance and blue at least 0, in which the device keeps light: (..., 3) of red, green and blue."""
+    """Clamp red, luminance and blue to at least 0, as the kernels do: (..., 3) of red, green and blue."""
     red, green, blue = LUMINANCE
     kept = np.maximum(np.stack((color[..., 0], luminance(color), color[..., 2]), axis=-1), 0)
     kept[..., 1] = (kept[..., 1] - red * kept[..., 0] - blue * kept[..., 2]) / green
@@ -193,7 +197,7 @@ def not_negative(color: Array) -> Array:
 
 
 def update(now: Stages, guides: Guides, settings: Kalman) -> dict[str, Array]:
-    """The prediction, corrected by what has changed, blended with new light by the Kalman gain."""
+    """Correct the prediction by the change of light, then blend it with the new light by the Kalman gain."""
     known = known_depth(now, guides) > 0
     changed = np.where(known[..., None], correction(now, guides, settings), 0)
     color, (residual, doubt, spread) = changed[..., :3], np.moveaxis(changed[..., 3:], -1, 0)
@@ -232,7 +236,7 @@ def moments(values: Array, weights: Sequence[tuple[Offset, Array]]) -> tuple[Arr
 
 
 def guidance(now: Stages, guides: Guides, settings: Kalman) -> dict[str, Array]:
-    """The luminance by which the levels tell light apart, and the variance where history is short."""
+    """The luminance by which the levels compare light, and the variance where history is short."""
     own = luminance(now["accumulated"])
     facets = Facets(guides.depth, guides.normal, depth_gradient(guides.depth))
     weights = {offset: facet_weight(facets, offset, change_tolerance(settings)) for offset in square(3)}
@@ -250,7 +254,7 @@ def guidance(now: Stages, guides: Guides, settings: Kalman) -> dict[str, Array]:
 
 
 def standard_error(variance: Array, guides: Guides) -> Array:
-    """How far the result's luminance may lie off the truth, as a standard deviation: (H, W)."""
+    """The standard error of the result's luminance: (H, W)."""
     error: Array = CALIBRATION * np.sqrt(variance.sum(axis=0)) * luminance(guides.divisor * np.ones(3))
     return error
 
@@ -259,12 +263,12 @@ class Oracle(FilterOracle[Kalman]):
     """Kalman over a sequence."""
 
     def length(self, now: Stages) -> Array:
-        """One over W, of the first signal."""
+        """1 / W of the first signal."""
         inverse = now["inverse_count"][0]
         return np.where(inverse > 0, 1 / np.where(inverse > 0, inverse, 1), 0)
 
     def filtered(self, now: Stages, guides: Guides, past: Past | None) -> Generator[Made, None, str]:
-        """Prediction, test, update, guidance, then the levels."""
+        """Yield prediction, test, update, guidance, and then the levels."""
         settings = self.settings
         yield "predict", predict(now, guides, past, settings)
         yield "innovation_mean", innovation_mean(now, guides, settings)

@@ -1,4 +1,4 @@
-"""Float64 oracle of LBF: `svgf_cl.filters.lbf` restated in NumPy."""
+"""Float64 oracle of LBF (`svgf_cl.filters.lbf`), in NumPy."""
 
 from __future__ import annotations
 
@@ -15,21 +15,22 @@ from svgf_cl.oracle.spatial import luminance_tolerance, variance
 from svgf_cl.oracle.taps import Array, Mask, Offset, luminance, shifted, smoothed, square
 from svgf_cl.oracle.temporal import Guides, Made, Stages, TemporalOracle, accumulated
 
-WINDOW = 10  # pixels to either side, of the filter
-NEAR, WIDE = 1, 3  # pixels to either side, of the neighbourhoods that statistics are of
-HALFWAY = {"light": 0.3, "depth": 0.01, "normal": 0.1, "albedo": 0.5, "noise": 1.0}  # where a statistic counts 1/2
-BLACK = 1e-12  # is added to the mean of light, which others are divided by
-EXPONENTS = (-24.0, 10.0)  # of the powers of two that parameters are
+WINDOW = 10  # pixels to either side, for the filter
+NEAR, WIDE = 1, 3  # pixels to either side, for the neighbourhoods of the statistics
+# the value of a statistic that becomes 1/2
+HALFWAY = {"light": 0.3, "depth": 0.01, "normal": 0.1, "albedo": 0.5, "noise": 1.0}
+BLACK = 1e-12  # added to the mean of light before it is a divisor
+EXPONENTS = (-24.0, 10.0)  # least and greatest exponent of a parameter, which is a power of two
 
 
 def squashed(value: Array, halfway: float) -> Array:
-    """The value over the sum of its magnitude and `halfway`, in -1..1."""
+    """Return value / (|value| + halfway), in -1..1."""
     result: Array = value / (np.abs(value) + halfway)
     return result
 
 
 def features(light: Array, guides: Guides) -> dict[str, Array]:
-    """The features by name, each (S or 1, H, W, channels); that of albedo is in octaves, the mean of its channels."""
+    """The features by name, each (S or 1, H, W, channels); albedo is in octaves, as the mean of its channels."""
     octaves = (
         np.zeros(guides.depth.shape) if guides.albedo is None else albedo_codes(guides.albedo).mean(axis=-1) / OCTAVE
     )
@@ -42,7 +43,7 @@ def features(light: Array, guides: Guides) -> dict[str, Array]:
 
 
 def difference(values: Array, guides: Guides, offset: Offset) -> tuple[Array, Mask]:
-    """By how much a tap differs from the pixel, 0 where not both show something; and where they do, (H, W)."""
+    """The difference between a tap and the pixel, 0 unless both are hits; and whether both are hits, (H, W)."""
     y, x, inside = shifted(offset, guides.depth.shape)
     seen: Mask = inside & guides.hit & guides.hit[y, x]
     return np.where(seen[..., None], values[:, y, x] - values, 0), seen
@@ -65,7 +66,7 @@ def spread(values: Array, guides: Guides, radius: int) -> tuple[Array, Array, Ar
 
 
 def gradient_of(values: Array, guides: Guides) -> Array:
-    """Length of the central difference per pixel, 0 along an axis where a neighbour shows nothing: (S, H, W)."""
+    """Length of the central difference per pixel, 0 along an axis if a neighbour is a miss: (S, H, W)."""
     squares = np.zeros(values.shape[:-1])
     for dx, dy in ((1, 0), (0, 1)):
         (ahead, seen), (behind, too) = (difference(values, guides, at) for at in ((dx, dy), (-dx, -dy)))
@@ -75,7 +76,7 @@ def gradient_of(values: Array, guides: Guides) -> Array:
 
 
 def statistics(light: Array, noise: Array, length: Array, guides: Guides) -> Array:
-    """What the network sees, section 8: (S, H, W, INPUTS).
+    """The input of the network, section 8: (S, H, W, INPUTS).
 
     Parameters
     ----------
@@ -103,7 +104,7 @@ def statistics(light: Array, noise: Array, length: Array, guides: Guides) -> Arr
 
 
 def parameters(seen: Array, network: Network) -> Array:
-    """The filter's parameters (..., OUTPUTS) that the network makes of statistics (..., INPUTS)."""
+    """The filter's parameters (..., OUTPUTS), which the network computes from statistics (..., INPUTS)."""
     hidden = seen @ network.first.T + network.first_bias
     hidden = hidden / (1 + np.abs(hidden))
     made: Array = np.exp2(np.clip(hidden @ network.second.T + network.second_bias, *EXPONENTS))
@@ -111,7 +112,7 @@ def parameters(seen: Array, network: Network) -> Array:
 
 
 def filtered(light: Array, noise: Array, chosen: Array, guides: Guides, settings: Lbf) -> Array:
-    """Section 8: the cross-bilateral filter of light (S, H, W, 3) with parameters (S, H, W, OUTPUTS) of each pixel."""
+    """Section 8: the bilateral filter of light (S, H, W, 3) with the parameters (S, H, W, OUTPUTS) of each pixel."""
     deviations = Deviations.of(guides, settings.depth_slope_floor)
     luma = luminance(light)
     tolerance = luminance_tolerance(1.0, smoothed(noise, guides.hit), luma)
@@ -143,7 +144,7 @@ class Oracle(TemporalOracle[Lbf]):
         self._network = Network.shipped()
 
     def spatial(self, now: Stages, guides: Guides) -> Generator[Made, None, str]:
-        """Variance, the network, and the window."""
+        """Yield the variance, the network, and the window."""
         yield "variance", {"variance": variance(accumulated(now, now["accumulated"]), guides, self.settings)}
         seen = statistics(now["accumulated"], now["variance"], now["history_length"], guides)
         yield "network", {"parameters": np.where(guides.hit[..., None], parameters(seen, self._network), 0)}

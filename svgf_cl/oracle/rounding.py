@@ -1,4 +1,4 @@
-"""How far rounding took a picture: an error relative to what there is, where there is something to be relative to."""
+"""The rounding error of a picture: relative to large values, absolute for values near zero."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.floating]
 
-# An error counts against the value plus this share of the mean: a relative error where there is something to be
-# relative to, an absolute one near zero. Of a colour, the value is the greatest of its channels: kernels keep luminance
-# in place of green, and a green that hardly contributes to it cannot be known as well.
+# The denominator of an error is the value plus this share of the mean. So the error is relative where the value is
+# large, and absolute near zero. For a colour, the value is the greatest of its channels: kernels store luminance
+# instead of green, so a green that hardly contributes to luminance has a large relative error.
 SCALE_SHARE = 1e-3
 
 
@@ -20,12 +20,12 @@ def largest_channel(colors: Array) -> Array:
 
 
 def counted_against(size: Array) -> Array:
-    """What an error is relative to: the size of a value, and `SCALE_SHARE` of the mean size; never 0."""
+    """The denominator of an error: the size of a value plus `SCALE_SHARE` of the mean size; never 0."""
     counted: Array = size + (SCALE_SHARE * size.mean() or 1.0)
     return counted
 
 
 def relative_error(got: Array, expected: Array, size: Array | None = None) -> Array:
-    """|got - expected| over what it counts against, of the same shape; the size is |expected| if not given."""
+    """|got - expected| divided by its denominator, of the same shape; by default, the size is |expected|."""
     error: Array = np.abs(got - expected) / counted_against(np.abs(expected) if size is None else size)
     return error

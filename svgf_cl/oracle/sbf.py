@@ -1,4 +1,4 @@
-"""Float64 oracle of SBF: `svgf_cl.filters.sbf` restated in NumPy."""
+"""Float64 oracle of SBF (`svgf_cl.filters.sbf`), in NumPy."""
 
 from __future__ import annotations
 
@@ -14,12 +14,15 @@ from svgf_cl.oracle.taps import Array, depth_gradient, luminance, shifted, squar
 from svgf_cl.oracle.temporal import Guides, Made, Stages, TemporalOracle, accumulated
 
 SIGMAS = (1, 2, 4, 8)  # pixels
-MOST_OF_A_FRAME = 0.9  # without accumulation nothing is known of a variance over time
-SMOOTHED = 3  # pixels to either side, of the risk
+MOST_OF_A_FRAME = 0.9  # without accumulation, nothing is known of the variance over time
+SMOOTHED = 3  # pixels to either side, for smoothing the risk
 
 
 def scale(light: Array, guides: Guides, sigma: float, settings: Sbf) -> tuple[Array, Array]:
-    """Section 8: light (S, H, W, 3) filtered at one scale, and the sum of weights, (H, W); its own is 1."""
+    """Section 8: light (S, H, W, 3) filtered at one scale, and the sum of the weights, (H, W).
+
+    The centre's weight is 1.
+    """
     deviations = Deviations.of(guides, settings.depth_slope_floor)
     color, total = light.copy(), np.ones(guides.depth.shape)
     for offset in square(int(2 * sigma)):
@@ -35,12 +38,12 @@ def scale(light: Array, guides: Guides, sigma: float, settings: Sbf) -> tuple[Ar
 
 
 def risk(filtered: Array, total: Array, light: Array, noise: Array) -> Array:
-    """Stein's unbiased risk estimate of luminance, less the noise itself, (S, H, W): Li et al. 2012, equation 3."""
+    """Stein's unbiased risk estimate of luminance, without the term -v, (S, H, W): Li et al. 2012, equation 3."""
     return np.square(luminance(filtered) - luminance(light)) + 2 * noise / total
 
 
 def smoothed_over_surface(values: Array, guides: Guides, settings: Sbf) -> Array:
-    """Sum of (S, H, W) over a window, weighted by how alike the surfaces are."""
+    """Sum of values (S, H, W) over a window, with weights between surfaces."""
     gradient = depth_gradient(guides.depth)
     total = np.zeros_like(values)
     for offset in square(SMOOTHED):
@@ -51,7 +54,7 @@ def smoothed_over_surface(values: Array, guides: Guides, settings: Sbf) -> Array
 
 
 def chosen(scales: Sequence[Array], risks: Sequence[Array], guides: Guides, settings: Sbf) -> Array:
-    """The light (S, H, W, 3) of the scale whose smoothed risk is least; the smaller scale of two that are equal."""
+    """The light (S, H, W, 3) of the scale with the least smoothed risk; of two equal scales, the smaller one."""
     best = np.argmin([smoothed_over_surface(each, guides, settings) for each in risks], axis=0)
     light: Array = np.take_along_axis(np.stack(scales), best[None, ..., None], axis=0)[0]
     return light
@@ -63,7 +66,7 @@ class Oracle(TemporalOracle[Sbf]):
     history: ClassVar[str] = "accumulated"
 
     def spatial(self, now: Stages, guides: Guides) -> Generator[Made, None, str]:
-        """Variance, the scales, and the choice."""
+        """Yield the variance, the scales, and the choice."""
         yield "variance", {"variance": variance(accumulated(now, now["accumulated"]), guides, self.settings)}
         alpha = self.settings.alpha_color
         share = np.minimum(np.maximum(1 / np.maximum(now["history_length"], 2), alpha / (2 - alpha)), MOST_OF_A_FRAME)

@@ -1,4 +1,4 @@
-"""Float64 oracle of what spatial filters share: which neighbours show one surface, and how much light varies."""
+"""Float64 oracle of the spatial filters: weights between surfaces, and the variance of light."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from svgf_cl.oracle.taps import Array, Mask, Offset, depth_gradient, dot, shifte
 from svgf_cl.oracle.temporal import Accumulated, Guides
 
 LONG_HISTORY, NEARLY_LONG = 4, 3.5  # frames
-LUMINANCE_TOLERANCE = (1e-3, 1e-12)  # relative, and where all is black
+LUMINANCE_TOLERANCE = (1e-3, 1e-12)  # relative, and absolute for black
 
 
 @dataclass(frozen=True, eq=False)
 class Facets:
-    """The surface at the pixels of a grid.
+    """The surfaces at the pixels of a grid.
 
     Parameters
     ----------
-    depth : (H, W); 0 where nothing counts.
+    depth : (H, W); 0 at pixels that do not count.
     normal : (H, W, 3)
     gradient : (H, W, 2), g.
-    spacing : int, pixels from one to the next.
+    spacing : int, distance in pixels between neighbours of the grid.
     """
 
     depth: Array
@@ -35,7 +35,7 @@ class Facets:
 
 @dataclass(frozen=True)
 class Tolerance:
-    """How different neighbours may be on one surface: sigma_depth, sigma_normal and depth_slope_floor."""
+    """How much neighbours on one surface may differ: sigma_depth, sigma_normal and depth_slope_floor."""
 
     depth: float
     normal: float
@@ -43,7 +43,7 @@ class Tolerance:
 
     @classmethod
     def of(cls, settings: SpatialFilter) -> Tolerance:
-        """That of the filter."""
+        """The tolerance of a filter."""
         return cls(settings.sigma_depth, settings.sigma_normal, settings.depth_slope_floor)
 
 
@@ -55,7 +55,7 @@ def surface_weight(guides: Guides, gradient: Array, offset: Offset, step: int, s
 
 
 def facet_weight(facets: Facets, offset: Offset, tolerance: Tolerance) -> Array:
-    """Section 4: w_z w_n for the tap `offset` places of the grid away, (H, W); 1 at the centre."""
+    """Section 4: w_z w_n for the tap that is `offset` away on the grid, (H, W); 1 at the centre."""
     y, x, inside = shifted(offset, facets.depth.shape)
     hits = inside & (facets.depth > 0) & (facets.depth[y, x] > 0)
     if not any(offset):
@@ -77,7 +77,7 @@ def same_albedo(guides: Guides, offset: Offset, octaves: float) -> Mask:
 
 
 def variance(past: Accumulated, guides: Guides, settings: SpatialFilter) -> Array:
-    """Section 3: variance of luminance, (S, H, W), from the moments or, where history is short, from 7x7 neighbours."""
+    """Section 3: variance of luminance, (S, H, W), from the moments or, with short history, from 7x7 neighbours."""
     gradient = depth_gradient(guides.depth)
     length = past.length
     taps = []
@@ -93,7 +93,7 @@ def variance(past: Accumulated, guides: Guides, settings: SpatialFilter) -> Arra
 
 
 def luminance_tolerance(sigma: float, variance: Array, luma: Array) -> Array:
-    """Section 4: the difference of luminance that is tolerated, from its smoothed variance and itself, (S, H, W)."""
+    """Section 4: the tolerated difference of luminance, from the smoothed variance and the luminance, (S, H, W)."""
     relative, least = LUMINANCE_TOLERANCE
     tolerance: Array = sigma * np.sqrt(variance) + relative * luma + least
     return tolerance

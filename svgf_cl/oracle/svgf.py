@@ -1,4 +1,4 @@
-"""Float64 oracle of SVGF: `svgf_cl.filters.svgf` restated in NumPy."""
+"""Float64 oracle of SVGF (`svgf_cl.filters.svgf`), in NumPy."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ def atrous(
     level : int, i, from 1; the taps lie 2^(i-1) pixels apart.
     settings : Settings or Kalman
     guidance : (S, H, W), optional
-        Section 7: what light is compared by is half its luminance and half this.
+        Section 7: light is compared by the mean of its luminance and this.
 
     Returns
     -------
-    illumination, var : as given, filtered.
+    illumination, var : filtered, of the same shapes.
     """
     step = 2 ** (level - 1)
     gradient = depth_gradient(guides.depth)
@@ -68,11 +68,11 @@ class Oracle(TemporalOracle[Settings]):
 
     @property
     def alpha_moments(self) -> float:
-        """The setting."""
+        """The setting of that name."""
         return self.settings.alpha_moments
 
     def spatial(self, now: Stages, guides: Guides) -> Generator[Made, None, str]:
-        """Variance, then the levels."""
+        """Yield the variance, then the levels."""
         yield "variance", {"variance": variance(accumulated(now, now["accumulated"]), guides, self.settings)}
         source = "accumulated", "variance"
         for level in range(1, self.settings.iterations + 1):

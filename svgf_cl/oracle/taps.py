@@ -1,6 +1,6 @@
-"""Array helpers of the oracle: luminance, where taps lie, and the depth gradient.
+"""Array helpers of the oracle: luminance, positions of taps, and the depth gradient.
 
-Pixel centres lie at whole coordinates; offsets and positions are (x, y), array indices are [y, x].
+Pixel centres are at whole coordinates; offsets and positions are (x, y), array indices are [y, x].
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def square(radius: int) -> list[Offset]:
 
 
 def locate(x: Indices, y: Indices, shape: Shape) -> tuple[Indices, Indices, Mask]:
-    """Rows and columns clamped into an image, and where they lay inside it."""
+    """Rows and columns clamped into an image, and whether they were inside it."""
     height, width = shape
     rows, columns = np.clip(y, 0, height - 1), np.clip(x, 0, width - 1)
     return rows, columns, (rows == y) & (columns == x)
@@ -93,7 +93,7 @@ def nearest_taps(position: Array) -> tuple[Indices, Indices, Array]:
 
 
 def depth_gradient(depth: Array) -> Array:
-    """g, section 1: per axis the smaller of the forward and backward difference between hits, (H, W, 2)."""
+    """g, section 1: the smaller of the forward and the backward difference between hits along each axis, (H, W, 2)."""
     return np.stack((slope_along((1, 0), depth), slope_along((0, 1), depth)), axis=-1)
 
 
@@ -108,13 +108,13 @@ def slope_along(axis: Offset, depth: Array) -> Array:
 
 
 def difference(offset: Offset, depth: Array) -> Array:
-    """z(p + offset) - z(p) between two hits inside the image, else infinite, (H, W)."""
+    """z(p + offset) - z(p) between two hits inside the image, otherwise infinite, (H, W)."""
     y, x, inside = shifted(offset, depth.shape)
     return np.where(inside & (depth > 0) & (depth[y, x] > 0), depth[y, x] - depth, np.inf)
 
 
 def smoothed(variance: Array, hit: Mask) -> Array:
-    """G, section 4: 3x3 Gaussian of a variance (S, H, W) over hits (H, W), renormalised."""
+    """G, section 4: 3x3 Gaussian of a variance (S, H, W) over hits (H, W), divided by the sum of its weights."""
     total, weight = np.zeros_like(variance), np.zeros(hit.shape)
     for dx, dy in square(1):
         y, x, inside = shifted((dx, dy), hit.shape)

@@ -1,7 +1,8 @@
-"""Float64 oracle of what temporal filters share: docs/algorithm.md restated in NumPy, one function a kernel.
+"""Float64 oracle of the temporal filters: docs/algorithm.md in NumPy, one function for each kernel.
 
-Arrays are image-shaped: planes (H, W), pictures (H, W, 3), and whatever exists once per signal has a leading axis S.
-The symbols in the docstrings (p, q, c, V, M, N, g, w, h) and the section numbers are those of docs/algorithm.md.
+Arrays have the shape of the image: planes are (H, W), pictures (H, W, 3). An array with one entry for each signal has a
+leading axis S. The symbols in the docstrings (p, q, c, V, M, N, g, w, h) and the section numbers are those of
+docs/algorithm.md.
 """
 
 from __future__ import annotations
@@ -36,14 +37,14 @@ from svgf_cl.oracle.taps import (
 
 CHANNEL_MAX = 1e10
 DEPTH_RANGE = (1e-20, 1e20)
-NORMAL_FLOOR = 1e-12  # of a normal's square
-# Whether kept as 16-bit floats.
+NORMAL_FLOOR = 1e-12  # the least square of a normal's length
+# By whether light is stored as 16-bit floats.
 ILLUMINATION_MAX = {False: 5e11, True: 65504.0}
 MOTION_MAX = 1e6
 NO_HISTORY = (-MOTION_MAX, -MOTION_MAX, 0.0)
 NEARER = float(np.float32(0.9999))
-HISTORY_WEIGHT = 0.01  # of the taps at the position itself, from which they are a history
-OTHERS_WEIGHT = 1 / 64  # of a tap of another albedo
+HISTORY_WEIGHT = 0.01  # the least sum of the weights of the bilinear taps that is a history
+OTHERS_WEIGHT = 1 / 64  # factor for a tap of another albedo
 LENGTH_MAX = {False: 1024, True: 32}
 YCOCG_OF_RGB = np.array(((1 / 4, 1 / 2, 1 / 4), (1 / 2, 0, -1 / 2), (-1 / 4, 1 / 2, -1 / 4)))
 RGB_OF_YCOCG = np.array(((1, 1, -1), (1, 0, 1), (1, -1, -1)))
@@ -51,15 +52,15 @@ RGB_OF_YCOCG = np.array(((1, 1, -1), (1, 0, 1), (1, -1, -1)))
 
 @dataclass(frozen=True, eq=False)
 class Guides:
-    """The noise-free part of a frame, made safe by `demodulate`.
+    """The noise-free fields of a frame, after `demodulate` has replaced invalid values.
 
     Parameters
     ----------
     normal : (H, W, 3), unit; 0 at a miss.
     depth : (H, W), > 0; 0 at a miss.
     motion : (H, W, 3), previous minus current x, y and depth.
-    id : (H, W) integers, or None where the frame has none.
-    albedo : (H, W, 3), 0..1, or None where light is not divided by it.
+    id : (H, W) integers, or None if the frame has none.
+    albedo : (H, W, 3), 0..1, or None if light is not divided by it.
     emission : (H, W, 3), not negative.
     """
 
@@ -72,18 +73,18 @@ class Guides:
 
     @property
     def divisor(self) -> Array:
-        """albedo', which light is divided by: (H, W, 3), or 1 where there is no albedo."""
+        """albedo', by which light is divided: (H, W, 3), or 1 if there is no albedo."""
         return np.ones(1) if self.albedo is None else divisor(self.albedo)
 
     @property
     def hit(self) -> Mask:
-        """Where something was seen, (H, W)."""
+        """Whether each pixel is a hit, (H, W)."""
         return self.depth > 0
 
 
 @dataclass(frozen=True, eq=False)
 class Accumulated:
-    """What temporal accumulation knows of each pixel.
+    """The accumulated values of each pixel.
 
     Parameters
     ----------
@@ -101,24 +102,24 @@ class Accumulated:
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """The previous frame: its guides, and what it accumulated, with the colour history as illumination (c_h)."""
+    """The previous frame: its guides, and its accumulated values with the colour history c_h as illumination."""
 
     guides: Guides
     accumulated: Accumulated
 
 
 def demodulate(frame: Frame, *, half: bool = False) -> tuple[Array, Guides]:
-    """Section 1: make the input safe, then divide out the albedo.
+    """Section 1: replace invalid input, then divide light by albedo.
 
     Parameters
     ----------
     frame : Frame of numpy arrays.
     half : bool
-        Whether light is kept in 16 bits, which says how bright it may be.
+        Whether light is stored in 16 bits, which limits its brightness.
 
     Returns
     -------
-    illumination : (S, H, W, 3), c; S is 2 with direct and indirect, else 1.
+    illumination : (S, H, W, 3), c; S is 2 with direct and indirect, otherwise 1.
     guides : Guides
     """
     given = {name: np.asarray(value, np.float64) for name, value in frame.present().items() if name != "id"}
@@ -136,12 +137,12 @@ def demodulate(frame: Frame, *, half: bool = False) -> tuple[Array, Guides]:
 
 
 def known(color: Array) -> Array:
-    """Section 1: a radiance or normal, (..., 3); 0 where any channel is NaN or beyond 1e10."""
+    """Section 1: a radiance or normal, (..., 3); 0 if any channel is NaN or beyond 1e10."""
     return np.where((np.abs(color) <= CHANNEL_MAX).all(axis=-1, keepdims=True), color, 0)
 
 
 def safe_surface(normal: Array, depth: Array) -> tuple[Array, Array]:
-    """Section 1: unit normal (H, W, 3) and depth (H, W) of a hit, 0 and 0 of a miss."""
+    """Section 1: unit normal (H, W, 3) and depth (H, W); both are 0 at a miss."""
     normal = known(normal)
     squared = dot(normal, normal)
     nearest, farthest = DEPTH_RANGE
@@ -151,7 +152,7 @@ def safe_surface(normal: Array, depth: Array) -> tuple[Array, Array]:
 
 
 def safe_motion(motion: Array) -> Array:
-    """Section 2: (H, W, 2) or (H, W, 3) to (H, W, 3), clamped; far outside the image where it leads nowhere."""
+    """Section 2: (H, W, 2) or (H, W, 3) to (H, W, 3), clamped; if it is not finite, it leads far outside the image."""
     if motion.shape[-1] == 2:
         motion = np.concatenate((motion, np.zeros_like(motion[..., :1])), axis=-1)
     bound = np.array((MOTION_MAX, MOTION_MAX, np.inf))
@@ -160,7 +161,7 @@ def safe_motion(motion: Array) -> Array:
 
 
 def consistent(x: Indices, y: Indices, guides: Guides, previous: Guides, settings: TemporalFilter) -> Mask:
-    """Section 2: whether the previous frame's taps (x, y), each (T, H, W), show what the pixel shows now."""
+    """Section 2: whether the previous frame's taps (x, y), each (T, H, W), show the same surface as the pixel."""
     gradient = depth_gradient(guides.depth)
     expected = guides.depth + guides.motion[..., 2]
     along_surface = dot(gradient, np.stack((x, y), axis=-1) - reprojected(guides.motion))
@@ -177,12 +178,12 @@ def consistent(x: Indices, y: Indices, guides: Guides, previous: Guides, setting
 
 @dataclass(frozen=True, eq=False)
 class Footprint:
-    """Which pixels of the previous frame show what a pixel shows now.
+    """The pixels of the previous frame that show the same surface as each pixel.
 
     Parameters
     ----------
     rows, columns : (T, H, W), of T taps.
-    weight : (T, H, W), adds up to 1, or to 0 where nothing is found.
+    weight : (T, H, W), adds up to 1, or to 0 if no tap is found.
     found : (H, W)
     """
 
@@ -196,7 +197,7 @@ class Footprint:
         return values[:, self.rows, self.columns]
 
     def mean(self, taps: Array) -> Array:
-        """Over the taps, (S, T, H, W[, 3]): (S, H, W[, 3])."""
+        """The weighted mean over the taps, (S, T, H, W[, 3]): (S, H, W[, 3])."""
         mean: Array = np.einsum("thw,sthw...->shw...", self.weight, taps)
         return mean
 
@@ -205,7 +206,8 @@ def footprint(guides: Guides, previous: Guides, settings: TemporalFilter) -> Foo
     """Section 2: the consistent taps."""
     position = reprojected(guides.motion)
 
-    # 13 candidates: the bilinear four, and the nearest nine that stand in where those four weigh too little.
+    # 13 candidates: the four bilinear taps, and the nearest nine, which are used if the weight of those four is too
+    # small.
     x, y, b = (np.concatenate(pair) for pair in zip(bilinear_taps(position), nearest_taps(position), strict=True))
     b *= consistent(x, y, guides, previous, settings)
     rows, columns, _ = locate(x, y, guides.depth.shape)
@@ -220,7 +222,7 @@ def footprint(guides: Guides, previous: Guides, settings: TemporalFilter) -> Foo
 
 
 def reproject(guides: Guides, history: History, settings: TemporalFilter) -> tuple[Accumulated, Mask]:
-    """Section 2: the history mean over the consistent taps, and where there is one, (H, W)."""
+    """Section 2: the mean of the history over the consistent taps, and whether there is any, (H, W)."""
     around = footprint(guides, history.guides, settings)
     past = history.accumulated
     mean = around.mean(around.taps(past.mean))
@@ -240,12 +242,12 @@ def temporal(
 
     Parameters
     ----------
-    illumination : (S, H, W, 3), this frame's, demodulated.
+    illumination : (S, H, W, 3), demodulated light of this frame.
     guides : Guides, this frame's.
     history : History, or None on the first frame.
     settings : TemporalFilter
     alpha_moments : float
-        Least share of the new frame in the moments.
+        Smallest share of the new frame in the moments.
     """
     sample = luminance(illumination)
     fresh = Accumulated(illumination, sample, np.zeros_like(sample), guides.hit.astype(np.float64))
@@ -266,14 +268,14 @@ def temporal(
 
 
 def modulate(illumination: Array, guides: Guides) -> Array:
-    """Section 5: out = sum over signals of c * albedo' + emission', (H, W, 3); no green below 0."""
+    """Section 5: out = sum over signals of c * albedo' + emission', (H, W, 3); green is at least 0."""
     # Emission is added once, whatever the number of signals.
     image: Array = np.maximum(illumination.sum(axis=0), (-np.inf, 0, -np.inf)) * guides.divisor + guides.emission
     return image
 
 
 def foremost(guides: Guides) -> tuple[Indices, Indices]:
-    """Section 6: rows and columns, each (H, W), of the nearest hit among each pixel and its eight neighbours."""
+    """Section 6: row and column, each (H, W), of the nearest hit among each pixel and its eight neighbours."""
     here = np.indices(guides.depth.shape, dtype=np.int64)
     rows: Indices = here[0]
     columns: Indices = here[1]
@@ -287,7 +289,7 @@ def foremost(guides: Guides) -> tuple[Indices, Indices]:
 
 
 def pixel_filtered(image: Array, share: float) -> Array:
-    """Section 6: n, the mean over the 3x3 neighbourhood inside the image, (H, W, 3)."""
+    """Section 6: n, the weighted mean over the 3x3 neighbourhood inside the image, (H, W, 3)."""
     kernel = {-1: share, 0: 1 - 2 * share, 1: share}
     total, weights = np.zeros_like(image), np.zeros(image.shape[:2])
     for dx, dy in square(1):
@@ -301,7 +303,7 @@ def pixel_filtered(image: Array, share: float) -> Array:
 def taa(
     image: Array, guides: Guides, length: Array, history: Array | None, settings: TemporalFilter
 ) -> tuple[Array, Array]:
-    """Section 6: temporal antialiasing with a neighbourhood-clamped history.
+    """Section 6: temporal antialiasing; the history is clamped to the neighbourhood.
 
     Parameters
     ----------
@@ -335,7 +337,7 @@ def taa(
 
 
 Stages = Mapping[str, Array]
-# What one kernel makes: its name, and its stages by the names that `Denoiser.stage` knows.
+# The name of a kernel, and the stages that it makes, by the names that `Denoiser.stage` has for them.
 Made = tuple[str, dict[str, Array]]
 Chosen = TypeVar("Chosen", bound=TemporalFilter)
 
@@ -349,7 +351,7 @@ class Past:
 
 
 class FilterOracle(ABC, Generic[Chosen]):
-    """A whole filter over a sequence, as the `Denoiser` runs it on a device.
+    """A complete filter over a sequence, as `Denoiser` runs it on a device.
 
     Parameters
     ----------
@@ -359,9 +361,9 @@ class FilterOracle(ABC, Generic[Chosen]):
     Attributes
     ----------
     past : Past, or None before the first frame
-        The last frame, and what the next one will read.
+        The last frame, which the next one reads.
     stages : dict of str to array
-        Every intermediate result of the last frame, named and shaped as by `Denoiser.stage`.
+        Every intermediate result of the last frame, with names and shapes as from `Denoiser.stage`.
     """
 
     def __init__(self, shape: Shape, settings: Chosen) -> None:
@@ -371,7 +373,7 @@ class FilterOracle(ABC, Generic[Chosen]):
         self.past: Past | None = None
 
     def reset(self) -> None:
-        """Forget the past: the next frame is a first frame."""
+        """Discard the history: the next frame is a first frame."""
         self.past = None
 
     def denoise(self, frame: Frame) -> Array:
@@ -385,13 +387,13 @@ class FilterOracle(ABC, Generic[Chosen]):
         return now["out"]
 
     def kernels(self, frame: Frame, now: Stages, past: Past | None) -> Iterator[Made]:
-        """What each kernel makes of a frame, kernel by kernel.
+        """Yield the result of each kernel for a frame, in order.
 
         Parameters
         ----------
         frame : Frame of numpy arrays.
         now : mapping of str to array
-            The frame's stages, looked up as kernels read them: what this yields, or what a device made.
+            The stages of the frame that kernels read: those that this yields, or those of a device.
         past : Past, or None for a first frame.
         """
         settings = self.settings
@@ -411,24 +413,24 @@ class FilterOracle(ABC, Generic[Chosen]):
 
     @abstractmethod
     def length(self, now: Stages) -> Array:
-        """N, of how many frames the history is, as antialiasing takes it: (H, W)."""
+        """N, the length of the history in frames, as antialiasing reads it: (H, W)."""
 
     @abstractmethod
     def filtered(self, now: Stages, guides: Guides, past: Past | None) -> Generator[Made, None, str]:
-        """What the kernels between demodulate and modulate make; returns the stage that the last of them made."""
+        """Yield the results of the kernels between demodulate and modulate; return the last stage."""
 
 
 class TemporalOracle(FilterOracle[Chosen]):
-    """A filter whose accumulation over time is that of section 2."""
+    """A filter that accumulates over time as in section 2."""
 
-    history: ClassVar[str]  # the stage that is the next frame's colour history
+    history: ClassVar[str]  # the stage that is the colour history of the next frame
 
     def length(self, now: Stages) -> Array:
-        """As it was counted."""
+        """The length that the temporal pass counted."""
         return now["history_length"]
 
     def filtered(self, now: Stages, guides: Guides, past: Past | None) -> Generator[Made, None, str]:
-        """Accumulation, then what is done over space."""
+        """Yield the accumulation, then the spatial part."""
         history = History(past.guides, accumulated(past.stages, past.stages[self.history])) if past else None
         made = temporal(now["demodulated"], guides, history, self.settings, self.alpha_moments)
         yield (
@@ -444,20 +446,23 @@ class TemporalOracle(FilterOracle[Chosen]):
 
     @property
     def alpha_moments(self) -> float:
-        """Least share of a new frame in the moments: as in colour, unless a filter has a setting for it."""
+        """Smallest share of a new frame in the moments.
+
+        The same as for colour, unless a filter has a setting for it.
+        """
         return self.settings.alpha_color
 
     @abstractmethod
     def spatial(self, now: Stages, guides: Guides) -> Generator[Made, None, str]:
-        """What the kernels between temporal and modulate make; returns the stage that the last of them made."""
+        """Yield the results of the kernels between temporal and modulate; return the last stage."""
 
 
 def seen_guides(frame: Frame, now: Stages) -> Guides:
-    """The guides of a frame whose surface a device may have rounded."""
+    """The guides of a frame, with depth and normal as a device has stored them."""
     _, exact = demodulate(frame)
     return replace(exact, normal=now["normal"], depth=now["depth"])
 
 
 def accumulated(stages: Stages, illumination: Array) -> Accumulated:
-    """What temporal accumulation knows, out of a frame's stages."""
+    """The accumulated values, taken from the stages of a frame."""
     return Accumulated(illumination, stages["mean"], stages["moment_variance"], stages["history_length"])

@@ -1,4 +1,4 @@
-"""Float64 oracle of what a-trous wavelet filters share: their splines."""
+"""Float64 oracle of the a-trous wavelet filters: their splines."""
 
-# By radius: of B3, and linear.
+# By radius: linear for 1, cubic (B3) for 2.
 SPLINES = {2: {-2: 1 / 16, -1: 1 / 4, 0: 3 / 8, 1: 1 / 4, 2: 1 / 16}, 1: {-1: 1 / 4, 0: 1 / 2, 1: 1 / 4}}

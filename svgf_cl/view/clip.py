@@ -1,4 +1,4 @@
-"""What is played: the frames of a clip, each with the picture that it converges to, where that is known."""
+"""The frames that are played, each with its reference if there is one."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from svgf_cl.prefilter import Effort
 
 Picture = npt.NDArray[np.float32]
 
-MEMORY = 4 * 2**30  # bytes, for all frames of a clip that is rendered
+MEMORY = 4 * 2**30  # bytes, for all frames of a rendered clip
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,9 +28,9 @@ class Item:
     ----------
     frame : Frame
     lights : tuple of Light
-        What the picture is the sum of; none where that is not known.
+        The light passes that add up to the picture; empty if they are not known.
     reference : (H, W, 3) float32, optional
-        What it converges to.
+        The picture without noise.
     """
 
     frame: Frame
@@ -44,14 +44,14 @@ class Item:
 
     @property
     def nbytes(self) -> int:
-        """How much memory it takes."""
+        """Bytes of memory that it needs."""
         arrays = [*self.frame.present().values(), self.reference]
         arrays += [array for light in self.lights for array in (light.radiance, light.factor)]
         return sum(array.nbytes for array in arrays if array is not None)
 
 
 def without_carried(frame: Frame) -> Frame:
-    """The frame without the fields that no filter reads, which would take memory."""
+    """The frame without the fields that no filter reads, to save memory."""
     return replace(frame, **dict.fromkeys(CARRIED))
 
 
@@ -61,17 +61,17 @@ class Clip(Protocol):
     Attributes
     ----------
     name, note : str
-        What is shown, and how it was made.
+        What is shown, and how it was made, as text for the page.
     shape : (int, int)
         (height, width) of all frames.
     numbers : sequence of int
-        Of the frames, as files have them.
+        The frames' numbers, as in the files' names.
     cuts : collection of int
-        Indices of the frames that do not follow on the one before them.
+        Indices of the frames that begin a new shot.
     has_references : bool
         Whether any frame has a reference.
     prefilter : {"auto", "on", "off"}
-        Which guides are filtered, as `Method` has it.
+        Which guides are filtered, as in `Method`.
     """
 
     @property
@@ -90,19 +90,19 @@ class Clip(Protocol):
     def prefilter(self) -> Effort: ...  # noqa: D102
 
     def read(self, index: int) -> Item:
-        """One frame; `SvgfError` where it cannot be had."""
+        """One frame; `SvgfError` if it cannot be read."""
 
     def beginning(self) -> tuple[Item, Item]:
-        """The first two frames, which tell what holds for all; the first one twice if there is no other."""
+        """The first two frames, which show which fields the clip has; the first one twice if there is only one."""
 
 
 class RenderedClip:
-    """A clip that is rendered while it is first played. Its frames stay in memory, for it is played again and again.
+    """A clip that is rendered while it is played for the first time. Its frames stay in memory for playing it again.
 
     Parameters
     ----------
     name, note : str
-        As of `Clip`.
+        As in `Clip`.
     shape : (int, int)
         (height, width) of all frames.
     count : int
@@ -114,7 +114,7 @@ class RenderedClip:
     """
 
     cuts: Collection[int] = ()
-    prefilter: Effort = "off"  # its guides have no noise
+    prefilter: Effort = "off"  # the rendered guides have no noise
 
     def __init__(
         self, name: str, note: str, shape: Shape, count: int, items: Iterator[Item], *, has_references: bool
@@ -125,12 +125,12 @@ class RenderedClip:
         self._rendered: list[Item] = []
 
     def read(self, index: int) -> Item:
-        """One frame; those before it are rendered first.
+        """One frame; earlier frames are rendered first.
 
         Raises
         ------
         SvgfError
-            Where a frame cannot be rendered, or all of them would need more than `MEMORY`.
+            If a frame cannot be rendered, or if all frames would need more than `MEMORY`.
         """
         while len(self._rendered) <= index:
             item = next(self._items, None)
@@ -142,11 +142,11 @@ class RenderedClip:
         return self._rendered[index]
 
     def beginning(self) -> tuple[Item, Item]:
-        """The first two frames, as of `Clip`."""
+        """The first two frames, as in `Clip`."""
         return self.read(0), self.read(min(1, len(self.numbers) - 1))
 
     def _check_memory(self, item: Item) -> None:
-        """Raise `SvgfError` where all frames are too many, by the size of one."""
+        """Raise `SvgfError` if all frames of this size would need too much memory."""
         if item.nbytes * len(self.numbers) > MEMORY:
             raise SvgfError(
                 f"--frames: expected at most {MEMORY // item.nbytes} frames of {extent(self.shape)} pixels, which stay"

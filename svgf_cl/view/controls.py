@@ -1,4 +1,4 @@
-"""Filters and their settings as the page's controls have them, and what the page says of them turned into a filter."""
+"""Filters and their settings as controls of the page, and the conversion of the page's answers to a filter."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from svgf_cl.settings import DOMAIN, REASON, UNIT, Choice, Domain, Range, domain
 
 
 def controls() -> dict[str, list[dict[str, Any]]]:
-    """The controls of each filter's settings, by the filter's name, as JSON has them."""
+    """The controls of each filter's settings, by the filter's name, as JSON."""
     return {
         name: [
             {
@@ -30,7 +30,7 @@ def controls() -> dict[str, list[dict[str, Any]]]:
 
 
 def control(domain: Domain) -> dict[str, Any]:
-    """The kind of control that a setting takes, and what it offers."""
+    """The kind of control for a setting, and its choices or range."""
     if isinstance(domain, Range):
         return {"kind": "number", "least": domain.least, "greatest": domain.greatest, "whole": domain.whole}
     if isinstance(domain, Choice):
@@ -39,17 +39,17 @@ def control(domain: Domain) -> dict[str, Any]:
 
 
 def values(settings: Filter) -> dict[str, Any]:
-    """The settings of a filter by their names."""
+    """The values of a filter's settings, by name."""
     return asdict(settings)
 
 
 def filter_of(name: object, given: object) -> Filter:
-    """The filter of that name with these settings; others have their defaults.
+    """The filter of this name with these settings; all other settings have their defaults.
 
     Raises
     ------
     SettingsError
-        There is no such filter, no such setting, or a setting is out of its range.
+        If there is no such filter or no such setting, or if a value is out of range.
     """
     if not isinstance(name, str) or name not in FILTERS:
         raise SettingsError(f"filter: expected {' or '.join(FILTERS)}, got {shown(name)}")

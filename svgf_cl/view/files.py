@@ -1,4 +1,4 @@
-"""The clip of a shot's files, which are read ahead of what is played."""
+"""The clip of a shot's files; the next files are read while a frame is played."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from svgf_cl.io.window import placed
 from svgf_cl.prefilter import Effort
 from svgf_cl.view.clip import Item, Picture, without_carried
 
-MEMORY = 2**30  # bytes, for the frames that stay in memory
-AHEAD = 2  # frames that are read while one is filtered
+MEMORY = 2**30  # bytes, for frames that stay in memory
+AHEAD = 2  # frames that are read ahead while one is filtered
 
 
 class FilesClip:
@@ -28,7 +28,7 @@ class FilesClip:
     ----------
     shot : Shot
     references : mapping of int to Path
-        Pictures that frames converge to, by the frames' numbers.
+        The pictures without noise, by the numbers of the frames.
     """
 
     prefilter: Effort = "auto"
@@ -41,25 +41,25 @@ class FilesClip:
         self.has_references = bool(references)
         self._pool = ThreadPoolExecutor(AHEAD)
         self._lock = Lock()
-        self._read: OrderedDict[int, Future[Item]] = OrderedDict()  # the one that was asked for last is at the end
+        self._read: OrderedDict[int, Future[Item]] = OrderedDict()  # the most recently read frame is at the end
 
     @property
     def name(self) -> str:
-        """The folder's, and that of the folder above."""
+        """The names of the folder and of its parent folder."""
         return "/".join(self._shot.paths[0].resolve().parent.parts[-2:])
 
     @property
     def note(self) -> str:
-        """Whose frames they are."""
+        """The renderer of the frames."""
         return f"frames of {self._shot.reading.reader.title}"
 
     def read(self, index: int) -> Item:
-        """One frame; the next ones are begun to be read.
+        """One frame; reading of the next ones is started.
 
         Raises
         ------
         FileError
-            As of `Shot.read`; where a reference is damaged or of another size.
+            As in `Shot.read`; if a reference is damaged or has another size.
         """
         with self._lock:
             wanted = [(index + step) % len(self.numbers) for step in range(1 + AHEAD)]
@@ -70,13 +70,13 @@ class FilesClip:
             item = found.result()
         except BaseException:
             with self._lock:
-                self._read.pop(index, None)  # it may have been written anew when it is asked for again
+                self._read.pop(index, None)  # a later call reads the file again, because it may have changed
             raise
         self._forget(item.nbytes)
         return item
 
     def beginning(self) -> tuple[Item, Item]:
-        """The first two frames, as of `Clip`."""
+        """The first two frames, as in `Clip`."""
         first, second = self._shot.beginning()
         return Item(first.frame, first.lights), Item(second.frame, second.lights)
 
@@ -86,7 +86,7 @@ class FilesClip:
         self._read.move_to_end(index)
 
     def _forget(self, nbytes: int) -> None:
-        """Keep those of the last `read`, and as many more as fit into `MEMORY` if each takes so many bytes."""
+        """Keep the frames of the last `read`, and as many others as fit into `MEMORY`, if each needs `nbytes`."""
         with self._lock:
             while len(self._read) > max(1 + AHEAD, MEMORY // nbytes):
                 self._read.popitem(last=False)
@@ -96,7 +96,7 @@ class FilesClip:
         return Item(without_carried(source.frame), source.lights, self._reference(self.numbers[index], source))
 
     def _reference(self, number: int, source: ShotFrame) -> Picture | None:
-        """The reference of a frame, on the window of the shot."""
+        """The reference of a frame, placed in the window of the shot."""
         path = self._references.get(number)
         if path is None:
             return None

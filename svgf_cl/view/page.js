@@ -1,4 +1,4 @@
-// The page's controls hold all that is chosen. One loop asks the server for one frame after the other and draws it.
+// The controls of the page hold its state. One loop requests one frame after the other from the server and draws it.
 
 const by = id => document.getElementById(id);
 const stage = by("stage"), divider = by("divider");
@@ -7,7 +7,7 @@ const figures = new Map([...stage.querySelectorAll("figure")].map(each => [each.
 const clip = await (await fetch("/clip")).json();
 const count = clip.numbers.length;
 
-// Settings: what each filter's controls say
+// Settings: the values of each filter's controls
 
 const settings = Object.fromEntries(Object.entries(clip.filters).map(([name, controls]) =>
   [name, Object.fromEntries(controls.map(each => [each.name, each.default]))]));
@@ -20,7 +20,7 @@ function make(name, attributes = {}, ...content) {
   return made;
 }
 
-// A slider's way through numbers: even, or by equal factors where they span orders of magnitude.
+// The scale of a slider: linear, or logarithmic if the range spans orders of magnitude.
 function scaleOf({ least, greatest, whole }) {
   const round = value => whole ? Math.round(value) : Number(value.toPrecision(3));
   const low = least > 0 ? least : greatest / 1e5; // the least above 0
@@ -89,13 +89,13 @@ function useDefaults() {
   showSettings();
 }
 
-// Frames: the next one is asked for while this one is drawn
+// Frames: the next one is requested while this one is drawn
 
 let playing = true;
-let target = 0; // the frame that is to be shown
+let target = 0; // index of the frame to show
 let way = 1; // 1 forward, -1 backward
-let isStale = true; // whether it has to be asked for
-let ahead = null; // the frame that was asked for ahead
+let isStale = true; // whether the frame has to be requested
+let ahead = null; // the request for the next frame
 let wake = () => {};
 
 function request(index) {
@@ -117,10 +117,10 @@ async function ask(body) {
 function askAhead(index) {
   const body = request(index);
   ahead = { index, body, answer: ask(body) };
-  ahead.answer.catch(() => {}); // told when the frame's turn comes
+  ahead.answer.catch(() => {}); // the error is shown when this frame is due
 }
 
-// While it plays, a change of settings shows from the frame after the next.
+// While frames play, a change of settings is visible from the frame after the next.
 async function load(index) {
   const asked = ahead;
   ahead = null;
@@ -129,7 +129,7 @@ async function load(index) {
   return ask(request(index));
 }
 
-// The frame after this one, and the way on from there; nothing at the end.
+// The frame after this one and the direction from there on; null at the end.
 function following(index, way) {
   const repeat = transport.repeat.value;
   const next = index + (repeat === "ping-pong" ? way : 1);
@@ -141,7 +141,7 @@ function following(index, way) {
 const sleep = time => new Promise(done => setTimeout(done, time));
 let due = 0;
 
-// Wait until the next frame is due; one that is late does not make the following ones faster.
+// Wait until the next frame is due. Frames after a late one are not played faster.
 async function pace() {
   const now = performance.now();
   if (due > now) await sleep(due - now);
@@ -164,7 +164,7 @@ async function play() {
       }
       draw(frame);
       complain("");
-      if (!playing && !isStale) target = index; // paused meanwhile
+      if (!playing && !isStale) target = index; // paused in the meantime
     } catch (error) {
       setPlaying(false);
       complain(error.message);
@@ -208,13 +208,13 @@ function playOrPause() {
   wake();
 }
 
-// What is drawn
+// Drawing
 
-const drawn = []; // when the last frames were
+const drawn = []; // times when the last frames were drawn
 let shownIndex = 0;
 const fixed = (value, digits, unit) => value === undefined || value === null ? "" : `${value.toFixed(digits)}${unit}`;
 
-// Draw a picture of three bytes a pixel; a canvas has four, which lie in memory as ABGR.
+// Draw a picture of three bytes per pixel. A canvas has four bytes, stored as ABGR.
 function paint(canvas, pixels) {
   const context = canvas.getContext("2d", { alpha: false });
   const image = context.createImageData(clip.width, clip.height);
@@ -251,7 +251,7 @@ function complain(message) {
   by("complaint").textContent = message;
 }
 
-// One view of all pictures: pixels of the screen for one of the picture, none to fit; and what is in the middle
+// The view that all pictures share: screen pixels per picture pixel (0: fit), and the point in the middle
 
 const view = { zoom: 0, x: 0.5, y: 0.5 };
 const pane = () => [...stage.querySelectorAll(".pane")].find(each => each.clientWidth);
@@ -270,7 +270,7 @@ function look() {
   stage.style.setProperty("--scale", scale);
   stage.style.setProperty("--left", snapped(box.clientWidth / 2 - view.x * clip.width * scale));
   stage.style.setProperty("--top", snapped(box.clientHeight / 2 - view.y * clip.height * scale));
-  // Pixels are shown as they are where they are enlarged; picking some to be shown small would be noise.
+  // Enlarged pixels are shown as squares. Reduced pictures are smoothed, because leaving out pixels would add noise.
   stage.classList.toggle("crisp", scale * devicePixelRatio >= 1);
   by("scale").value = `${Math.round(100 * scale * devicePixelRatio)} %`;
   for (const each of tools.zoom) each.checked = Number(each.value) === view.zoom;
@@ -301,7 +301,7 @@ function point(at) {
   if (x >= 0 && x < clip.width && y >= 0 && y < clip.height) by("pixel").value = `pixel ${x}, ${y}`;
 }
 
-// Which pictures, and how they lie
+// Choice and layout of the pictures
 
 const CAPTION = 24; // pixels
 
@@ -321,7 +321,7 @@ function arrange() {
   fill();
 }
 
-// Put the pictures into as many columns as let them be largest.
+// Choose the number of columns in which the pictures are largest.
 function fill() {
   const number = stage.querySelectorAll("figure:not([hidden])").length;
   const size = columns => Math.min(
@@ -380,7 +380,7 @@ const KEYS = {
 function press(event) {
   const act = KEYS[event.key];
   if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
-  if (event.target.matches("select, input:not([type=checkbox])")) return; // keys are theirs
+  if (event.target.matches("select, input:not([type=checkbox])")) return; // these use the keys themselves
   if (event.key === " " && event.target.matches("button, input")) return;
   event.preventDefault();
   act();

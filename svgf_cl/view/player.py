@@ -1,4 +1,4 @@
-"""`Player`: which frame is shown, and what the filter makes of it, forward, backward or from anywhere."""
+"""`Player`: filters the frame that is shown, forward, backward or from anywhere."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from svgf_cl.filters.filter import Filter
 from svgf_cl.shot_denoiser import Method, ShotDenoiser
 from svgf_cl.view.clip import Clip, Item, Picture
 
-MEMORY = 2**28  # bytes, for the pictures that can be stepped back to
-SETTLED = WARM_UP // 2  # frames of past without which no picture of a run-up is shown
+MEMORY = 2**28  # bytes, for pictures to which one can step back
+SETTLED = WARM_UP // 2  # frames; pictures with a shorter history are not shown
 
 
 @dataclass(frozen=True, eq=False)
 class Filtered:
-    """What the filter made of a frame.
+    """A filtered frame.
 
     Parameters
     ----------
     picture : (H, W, 3) float32
         Linear HDR radiance.
     times : mapping of str to float
-        Milliseconds on the device, by pass.
+        Milliseconds on the device, for each pass.
     """
 
     picture: Picture
@@ -33,18 +33,18 @@ class Filtered:
 
 
 class Player:
-    """Filters the frames of a clip as they are asked for.
+    """Filters the frames of a clip as they are requested.
 
-    The frame that follows on the last one is filtered with the past that is there. The first frame begins anew. A
-    picture that was made since then with the settings of now, and is still in memory, is shown as it was. Any other
-    frame takes a run-up: the filter begins anew up to `WARM_UP` frames before it. Pictures of a run-up are kept, too,
-    but for those whose past is short.
+    A frame that follows the last one is filtered with the history so far. The first frame begins without history. A
+    picture that was made since then with the current settings is shown again, as long as it is in memory. Any other
+    frame needs a warm-up: the filter begins without history up to `WARM_UP` frames before it. Pictures of a warm-up are
+    kept, too, except those with a short history.
 
     Parameters
     ----------
     clip : Clip
     settings : Filter
-        To begin with.
+        The settings at the beginning.
     """
 
     def __init__(self, clip: Clip, settings: Filter) -> None:
@@ -54,23 +54,23 @@ class Player:
         method = Method(settings, prefilter=clip.prefilter)
         self._denoiser = ShotDenoiser(clip.shape, method, len(second.lights))
         self._denoiser.settle(second.frame, second.lights, first.frame)
-        self._last: int | None = None  # the frame that the denoiser's past ends with
+        self._last: int | None = None  # the last frame in the denoiser's history
         self._kept: OrderedDict[int, Filtered] = OrderedDict()
 
     def show(self, index: int, settings: Filter) -> tuple[Item, Filtered]:
-        """A frame, and what the filter makes of it.
+        """A frame, and the result of the filter.
 
         Parameters
         ----------
         index : int
             From 0.
         settings : Filter
-            Where they are others than before, the filter goes on with them as by `Denoiser.update`.
+            If they differ from the current settings, the filter continues with them, as after `Denoiser.update`.
 
         Raises
         ------
         SvgfError
-            The frame cannot be read or filtered. The next one that can be begins anew.
+            If the frame cannot be read or filtered. The next good frame begins without history.
         """
         if not 0 <= index < len(self.clip.numbers):
             raise SvgfError(f"index: expected 0 to {len(self.clip.numbers) - 1}, got {index}")
@@ -78,7 +78,7 @@ class Player:
             self._kept.clear()
             self._denoiser.update(settings)
             self._settings = settings
-        item = self.clip.read(index)  # first of all: without it no run-up is worth anything
+        item = self.clip.read(index)  # read it first: if this fails, a warm-up would be useless
         if index and index in self._kept:
             return item, self._kept[index]
         run_up = self._run_up(index)
@@ -87,7 +87,7 @@ class Player:
         return item, self._filter(index, item)
 
     def _run_up(self, index: int) -> range:
-        """The frames to be filtered before this one; the past is forgotten where it is not that of this one."""
+        """The frames to be filtered before this one; discards the history if it does not end before them."""
         if index and self._last == index - 1:
             return range(0)
         self._forget()
@@ -95,11 +95,11 @@ class Player:
         return range(max(begin, index - WARM_UP), index)
 
     def _begins(self, index: int) -> bool:
-        """Whether a frame has no past in the clip."""
+        """Whether a frame has no earlier frames in the clip or shot."""
         return index == 0 or index in self.clip.cuts
 
     def _skip(self, index: int, *, is_kept: bool) -> None:
-        """Filter a frame of a run-up; behind one that cannot be read it begins anew."""
+        """Filter a frame of a warm-up; after a frame that cannot be read, the filter begins without history."""
         try:
             item = self.clip.read(index)
         except FileError:
@@ -112,7 +112,7 @@ class Player:
     def _filter(self, index: int, item: Item) -> Filtered:
         if index in self.clip.cuts:
             self._denoiser.reset()
-        self._last = None  # until it is done
+        self._last = None  # until the frame is filtered
         picture = self._denoiser.denoise(item.frame, item.lights).picture
         made = Filtered(picture[..., :3], self._denoiser.profile())
         self._last = index

@@ -1,4 +1,4 @@
-"""Clips of scenes: those that an installed package renders, and a room that needs no other package."""
+"""Clips of scenes, which an installed package renders, and of a room that needs no other package."""
 
 from __future__ import annotations
 
@@ -24,29 +24,29 @@ def room(shape: Shape, count: int | None) -> RenderedClip:
 
 
 def open_footage(name: str, shape: Shape, count: int | None, spp: int | None) -> Footage:
-    """A scene by its name, folder or file, with rays through pixel centres.
+    """Open a scene by its name, folder or file, with rays through pixel centres.
 
     Parameters
     ----------
     name : str
     shape : (int, int)
     count : int, optional
-        How many frames; by default as many as show the scene.
+        Number of frames; by default, as many as the scene needs.
     spp : int, optional
-        Samples per pixel of references; by default there are none.
+        Samples per pixel of the references; without it there are no references.
 
     Raises
     ------
     SvgfError
-        Where nothing renders scenes here, or there is no such scene.
+        If no package renders scenes here, or there is no such scene.
     """
     return opener()(name, Choice(shape, count, ALL, spp or 2, jitter=False))
 
 
 def scene(footage: Footage, *, has_references: bool, advance: Callable[[], None]) -> RenderedClip:
-    """The clip of a scene; references are rendered here, as far as they are not kept from an earlier run.
+    """The clip of a scene; references that are not stored from an earlier run are rendered first.
 
-    `advance` is called ``footage.steps`` times then.
+    While references are rendered, `advance` is called ``footage.steps`` times.
     """
     truths = dict(truths_of(footage, advance)) if has_references else {}
     note = footage.note if has_references else "1 sample per pixel, rays go through pixel centres; no reference"
@@ -56,12 +56,12 @@ def scene(footage: Footage, *, has_references: bool, advance: Callable[[], None]
 
 
 def truths_of(footage: Footage, advance: Callable[[], None]) -> Iterator[tuple[int, Picture]]:
-    """Number and reference of each frame: the mean of the two halves."""
+    """The number and the reference of each frame; the reference is the mean of the two halves."""
     for number, (first, second) in footage.truths(advance).items():
         yield number, np.asarray(0.5 * (first + second), np.float32)
 
 
 def items(footage: Footage, truths: Mapping[int, Picture]) -> Iterator[Item]:
-    """The frames of a scene, rendered one by one."""
+    """Render the frames of a scene one by one."""
     for number, frame in zip(footage.numbers, footage.frames(), strict=True):
         yield Item(frame, reference=truths.get(number))

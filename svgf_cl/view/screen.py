@@ -1,4 +1,4 @@
-"""`Screen`: pictures as the page draws them, and how far they are from the reference."""
+"""`Screen`: converts pictures for the page, and measures them against the reference."""
 
 from __future__ import annotations
 
@@ -15,23 +15,24 @@ from svgf_cl.view.player import Filtered
 
 NOISY, DENOISED, REFERENCE = "noisy", "denoised", "reference"
 
-NOTHING: tuple[int, float, Mapping[str, Picture]] = (-2, 0.0, {})  # was shown before: no frame's neighbour
+# index, exposure and pictures before the first frame; no frame follows this index
+NOTHING: tuple[int, float, Mapping[str, Picture]] = (-2, 0.0, {})
 
-# Floats are looked up by their upper bits: sign, exponent and 11 bits of mantissa.
+# Floats are looked up by their upper bits: sign, exponent and 11 bits of the mantissa.
 DROPPED = 12
 
 
 @lru_cache(maxsize=8)
 def table(exposure: float) -> Bytes:
-    """What `to_bytes` makes of floats, by their upper bits; taken in the middle of those that share them."""
+    """The bytes of floats by their upper bits, computed for the middle of the floats that share them."""
     first = (np.arange(2 ** (32 - DROPPED), dtype=np.uint32) << DROPPED).view(np.float32)
     middle = (first.view(np.uint32) + (1 << (DROPPED - 1))).view(np.float32)
-    with np.errstate(invalid="ignore"):  # some are signalling NaN
+    with np.errstate(invalid="ignore"):  # some are signalling NaNs
         return to_bytes(np.where(np.isinf(first), first, middle), exposure)
 
 
 def fast_bytes(picture: Picture, exposure: float) -> Bytes:
-    """Return `to_bytes` of a float32 picture, at most one step of 255 off, in a tenth of the time."""
+    """Convert a float32 picture like `to_bytes`, with an error of at most one step of 255, in a tenth of the time."""
     keys = np.ascontiguousarray(picture, np.float32).view(np.uint32) >> DROPPED
     return table(exposure).take(keys)
 
@@ -43,9 +44,9 @@ class View:
     Parameters
     ----------
     pictures : mapping of str to (H, W, 3) 8-bit
-        By `NOISY`, `DENOISED`, `REFERENCE`; the last only where there is one.
+        By `NOISY`, `DENOISED` and `REFERENCE`; the last one only if there is a reference.
     psnr, temporal : mapping of str to float
-        Of noisy and denoised against the reference; empty where there is none.
+        Of noisy and denoised, compared with the reference; empty if there is none.
     """
 
     pictures: Mapping[str, Bytes]
@@ -54,13 +55,13 @@ class View:
 
 
 class Screen:
-    """Shows frames one after the other; the neighbour of the frame before has a temporal error."""
+    """Shows frames one after the other. A frame that follows the previous one has a temporal error, too."""
 
     def __init__(self) -> None:
         self._last: tuple[int, float, Mapping[str, Picture]] = NOTHING
 
     def show(self, index: int, item: Item, made: Filtered, exposure: float) -> View:
-        """Show a frame, brightened by so many stops; measures are of what is shown (`svgf_cl.compare.metrics`)."""
+        """Show a frame, brightened by `exposure` stops; the shown pictures are measured (`svgf_cl.compare.metrics`)."""
         light = {NOISY: item.noisy, DENOISED: made.picture}
         if item.reference is not None:
             light[REFERENCE] = item.reference

@@ -1,4 +1,4 @@
-"""The server behind the page: it answers this machine alone.
+"""The server of the page, which answers requests from this machine only.
 
 ========  ========  ================================================================================================
 request   path      answer
@@ -10,10 +10,10 @@ POST      /frame    ``{"index": 3, "filter": "kalman", "settings": {}, "exposure
                     header ``Frame`` has times and measures as JSON
 ========  ========  ================================================================================================
 
-Pictures are not compressed: of 1280x720 pixels, three raw ones are shown in 0.2 s on a busy CPU with two cores, as PNG
-of the lowest level in 0.8 s, as lossless WebP in 0.7 s.
+Pictures are not compressed. On a busy CPU with two cores, showing three pictures of 1280x720 takes 0.2 s without
+compression, 0.8 s as PNG of the lowest level and 0.7 s as lossless WebP.
 
-What is wrong with a request is answered as ``{"error": "..."}`` with status 400.
+Errors in a request are answered as ``{"error": "..."}`` with status 400.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ from svgf_cl.view.player import Player
 from svgf_cl.view.screen import Screen
 
 HOST = "127.0.0.1"
-LARGEST = 2**16  # bytes of a request
+LARGEST = 2**16  # bytes of the largest request
 
-# Package and kind of each file of the page.
+# Package and content type of each file of the page.
 FILES = {
     "/": ("svgf_cl.view", "page.html", "text/html"),
     "/page.css": ("svgf_cl.view", "page.css", "text/css"),
@@ -47,7 +47,7 @@ FILES = {
     "/controls.css": ("svgf_cl.compare", "controls.css", "text/css"),
     "/gestures.js": ("svgf_cl.compare", "gestures.js", "text/javascript"),
 }
-# The page takes nothing from anywhere else, and no other page may hold it.
+# The page may load nothing from elsewhere, and no other page may embed it.
 HEADERS = {
     "Cache-Control": "no-store",
     "Content-Security-Policy": "default-src 'none'; connect-src 'self'; script-src 'self'; style-src 'self';"
@@ -59,14 +59,14 @@ HEADERS = {
 
 @dataclass(frozen=True)
 class Start:
-    """What the page begins with.
+    """The initial state of the page.
 
     Parameters
     ----------
     settings : Filter
     exposure : float, stops
     device : str
-        What filters run on, as it is shown.
+        The device that filters run on, as text for the page.
     """
 
     settings: Filter
@@ -75,17 +75,17 @@ class Start:
 
 
 class Server(ThreadingHTTPServer):
-    """Answers the page of one player, from `play` on.
+    """Answers the page of one player, once `play` is called.
 
     Parameters
     ----------
     port : int
-        0 for any that is free. It is taken at once.
+        0 for any free port. The port is opened at once.
 
     Raises
     ------
     SvgfError
-        The port is used, or not for users.
+        If the port is in use, or users may not open it.
     """
 
     daemon_threads = True
@@ -97,12 +97,12 @@ class Server(ThreadingHTTPServer):
             raise SvgfError(f"--port: expected a free port, got {port} ({error.strerror}); choose another") from error
 
     def play(self, player: Player, start: Start, poll: float = 0.5) -> None:
-        """Answer until `shutdown`, of which it learns within `poll` seconds."""
+        """Answer requests until `shutdown` is called, which takes effect within `poll` seconds."""
         self._player, self._start, self._screen, self._lock = player, start, Screen(), Lock()
         try:
             self.serve_forever(poll)
         finally:
-            self._lock.acquire()  # for good: the device is at rest when the process ends
+            self._lock.acquire()  # never released: the device must be idle when the process ends
 
     @property
     def url(self) -> str:
@@ -111,11 +111,14 @@ class Server(ThreadingHTTPServer):
 
     @property
     def hosts(self) -> set[str]:
-        """What a browser on this machine calls this server; another name may lead here from a page of anyone."""
+        """The names by which a browser on this machine may call this server.
+
+        A request with another name may come from a page of another site (DNS rebinding).
+        """
         return {f"{HOST}:{self.server_port}", f"localhost:{self.server_port}"}
 
     def clip(self) -> dict[str, Any]:
-        """What is played, and how to begin."""
+        """The clip, the filters, and the initial state."""
         clip, (height, width) = self._player.clip, self._player.clip.shape
         return {
             "name": clip.name,
@@ -132,7 +135,7 @@ class Server(ThreadingHTTPServer):
         }
 
     def frame(self, wanted: object) -> tuple[dict[str, Any], list[Bytes]]:
-        """Times and measures of a frame, and its pictures; `SvgfError` where it cannot be shown."""
+        """Times and measures of a frame, and its pictures; `SvgfError` if it cannot be shown."""
         if not isinstance(wanted, Mapping):
             raise SvgfError(f"frame: expected index, filter, settings and exposure, got {shown(wanted)}")
         index, exposure = wanted.get("index"), wanted.get("exposure", 0.0)
@@ -154,18 +157,18 @@ class Server(ThreadingHTTPServer):
         return about, list(view.pictures.values())
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """A tab that was closed is no error."""
+        """Ignore errors of connections that a closed tab has ended."""
         if not isinstance(sys.exc_info()[1], ConnectionError):
             super().handle_error(request, client_address)
 
 
 def finite(value: float) -> float | None:
-    """A number as JSON has it: None where it is infinite or NaN."""
+    """A number for JSON: None if it is infinite or NaN."""
     return value if math.isfinite(value) else None
 
 
 def parsed(body: bytes) -> object:
-    """What JSON says; `SvgfError` where it is none."""
+    """Parse JSON; `SvgfError` if the text is not JSON."""
     try:
         return json.loads(body)
     except (ValueError, RecursionError) as error:
@@ -173,9 +176,9 @@ def parsed(body: bytes) -> object:
 
 
 class Handler(BaseHTTPRequestHandler):
-    """Answers one connection."""
+    """Answers the requests of one connection."""
 
-    protocol_version = "HTTP/1.1"  # which keeps it open
+    protocol_version = "HTTP/1.1"  # keeps connections open
     server: Server
 
     def do_GET(self) -> None:
@@ -206,10 +209,10 @@ class Handler(BaseHTTPRequestHandler):
             self._send("application/octet-stream", *(picture.data for picture in pictures), Frame=json.dumps(about))
 
     def log_message(self, format: str, *args: Any) -> None:
-        """Say nothing: there is a line for every frame."""
+        """Print nothing, because there would be a line for every frame."""
 
     def _is_from_here(self) -> bool:
-        """Refuse what a page of another origin sends, or what was led here by another name."""
+        """Refuse requests from pages of another origin, and requests that use another name of this machine."""
         if self.headers.get("Host") not in self.server.hosts:
             self._refuse(HTTPStatus.FORBIDDEN, f"expected the host {self.server.url}")
             return False
@@ -220,10 +223,10 @@ class Handler(BaseHTTPRequestHandler):
         return True
 
     def _body(self) -> bytes | None:
-        """What was sent; None where it is refused."""
+        """The body of the request; None if it was refused."""
         length = self.headers.get("Content-Length", "")
         if not length.isascii() or not length.isdecimal() or int(length) > LARGEST:
-            self.close_connection = True  # for what follows is not read
+            self.close_connection = True  # because the rest is not read
             self._refuse(HTTPStatus.BAD_REQUEST, f"expected at most {LARGEST} bytes, got {shown(length)}")
             return None
         return self.rfile.read(int(length))
@@ -235,7 +238,7 @@ class Handler(BaseHTTPRequestHandler):
         self._send("application/json", json.dumps(content).encode())
 
     def _send(self, kind: str, *parts: bytes | memoryview, status: HTTPStatus = HTTPStatus.OK, **headers: str) -> None:
-        """Send an answer of these parts, one behind the other."""
+        """Send an answer that consists of these parts, in order."""
         self.send_response(status)
         size = sum(memoryview(part).nbytes for part in parts)
         for name, value in {**HEADERS, **headers, "Content-Type": kind, "Content-Length": str(size)}.items():
