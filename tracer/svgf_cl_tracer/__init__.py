@@ -1,6 +1,7 @@
 """A small path tracer on Embree that feeds the denoiser: noisy frames with their G-buffers, and references.
 
-All of `svgf_cl_tracer.api` is found here, and imported when it is first asked for: the command line starts without it.
+All names of `svgf_cl_tracer.api` are available here. They are imported at their first use, so that the command line
+starts without them.
 """
 
 from __future__ import annotations

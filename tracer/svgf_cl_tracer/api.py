@@ -1,4 +1,4 @@
-"""What the tracer offers under `svgf_cl_tracer`; importing it takes Numba, Embree and all else that it needs."""
+"""The public names of `svgf_cl_tracer`; importing this module imports Numba, Embree and all other packages it needs."""
 
 from .builtin import BUILTIN, builtin_scene
 from .camera import Camera, CameraPath

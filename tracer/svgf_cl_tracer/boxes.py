@@ -1,4 +1,4 @@
-"""Bounding boxes, to spare rays that pass them by: a tenth of the time that Embree takes to find nothing."""
+"""Bounding boxes, to skip rays that miss everything; this takes a tenth of the time that Embree needs for such rays."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .vectors import Float32, Float64
 
 TINY = 1e-30
 
-# Around what may be anywhere.
+# The box of an object that may be anywhere.
 EVERYWHERE = np.array([[-np.inf] * 3, [np.inf] * 3])
 
 
@@ -31,7 +31,7 @@ def passing(boxes: Iterable[Float64], origin: Float32, direction: Float32, dista
     """Which rays from `origin` (N, 3) along `direction` (N, 3) pass any of the boxes (2, 3) within `distance` (N,)."""
     passes = np.zeros(len(origin), np.bool_)
     for box in boxes:
-        # With room around it: rounding must not lose rays that run along a face of the box.
+        # The box is enlarged a little: rounding must not lose rays that run along a face of the box.
         room = 1e-5 * np.abs(box).max()
         _mark(box[0] - room, box[1] + room, origin, direction, distance, passes)
     return passes
@@ -43,7 +43,7 @@ def _mark(
 ) -> None:
     """Mark the rays that pass one box; without branches, for vectors."""
     for ray in range(len(origin)):
-        # Along a face of the box 0 / 0 would be neither in front of it nor behind.
+        # Along a face of the box, 0 / 0 would compare as neither in front of the face nor behind it.
         x = 1.0 / (direction[ray, 0] + TINY)
         y = 1.0 / (direction[ray, 1] + TINY)
         z = 1.0 / (direction[ray, 2] + TINY)

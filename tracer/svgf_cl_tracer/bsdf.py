@@ -1,11 +1,11 @@
-"""How a surface scatters light: glTF's metallic-roughness model made to conserve energy, and smooth glass.
+"""How a surface scatters light: glTF's metallic-roughness model with conservation of energy, and smooth glass.
 
-Directions are unit vectors away from the surface in a frame whose third axis is its shading normal; `wo` leads to where
-the light goes and `wi` to where it comes from. Scattering functions are given times the cosine of `wi`.
+Directions are unit vectors that point away from the surface, in a frame whose third axis is the shading normal: `wo`
+points to where the light goes, `wi` to where it comes from. Scattering functions include the cosine of `wi`.
 
-Over glTF's specular lobe (GGX, height-correlated Smith shadowing, Schlick's Fresnel reflectance) light that hits the
-surface more than once is added, and the diffuse lobe gets what the specular one leaves. Both are reciprocal, and white
-surfaces reflect all light to within the error of the tables in `energy`.
+The specular lobe is glTF's (GGX, height-correlated Smith shadowing, Schlick's Fresnel reflectance), with light added
+for rays that hit the surface more than once. The diffuse lobe gets the light that the specular one does not reflect.
+Both are reciprocal, and white surfaces reflect all light, apart from the error of the tables in `energy`.
 
 Sources: Walter et al., Microfacet Models for Refraction through Rough Surfaces, 2007 (GGX); Heitz, Understanding the
 Masking-Shadowing Function, JCGT 3 (2), 2014; Kulla and Conty, Revisiting Physically Based Shading at Imageworks, 2017
@@ -32,9 +32,9 @@ class Reflection(NamedTuple):
     Attributes
     ----------
     diffuse : Vec3
-        Reflectance of what is under the coat; 0 in a metal.
+        Reflectance of the surface under the coat; 0 for a metal.
     f0 : Vec3
-        Reflectance of the coat at normal incidence; where it is 0 there is no coat, and the surface is Lambertian.
+        Reflectance of the coat at normal incidence. If it is 0, there is no coat, and the surface is Lambertian.
     alpha : float
         GGX width of the coat's lobe, ALPHA_FLOOR to 1.
     """
@@ -46,7 +46,7 @@ class Reflection(NamedTuple):
 
 @compiled
 def reflection(base: Vec3, metallic: float, roughness: float, ior: float) -> Reflection:
-    """The lobes of a `Material` whose colour here is `base`."""
+    """The lobes of a `Material` whose colour at this point is `base`."""
     dielectric = ((ior - 1.0) / (ior + 1.0)) ** 2 * (1.0 - metallic)
     f0 = (dielectric + base[0] * metallic, dielectric + base[1] * metallic, dielectric + base[2] * metallic)
     return Reflection(scale(base, 1.0 - metallic), f0, max(roughness * roughness, ALPHA_FLOOR))
@@ -60,7 +60,7 @@ def is_lambertian(r: Reflection) -> bool:
 
 @compiled
 def albedo(r: Reflection, cos_o: float) -> Vec3:
-    """The share of the light from under the cosine `cos_o` that is reflected, by both lobes together."""
+    """The share of the light arriving under the cosine `cos_o` that both lobes together reflect."""
     if is_lambertian(r):
         return r.diffuse
     coat = _coat_albedo(r.f0, terms(cos_o, r.alpha), mean_terms(r.alpha))
@@ -69,7 +69,7 @@ def albedo(r: Reflection, cos_o: float) -> Vec3:
 
 @compiled
 def specular_share(r: Reflection, cos_o: float) -> float:
-    """The probability with which to sample the specular lobe: its share of the albedo, 0.1..0.9 if both exist."""
+    """The probability of sampling the specular lobe: its share of the albedo, 0.1..0.9 if both lobes exist."""
     if is_lambertian(r):
         return 0.0
     if luminance(r.diffuse) <= 0.0:
@@ -87,8 +87,8 @@ def evaluate_diffuse(r: Reflection, cos_o: float, cos_i: float) -> Vec3:
     lambert = scale(r.diffuse, cos_i / math.pi)
     if is_lambertian(r):
         return lambert
-    # Light goes through the coat on its way in and out. Both shares, integrated over all directions, leave just what
-    # the coat does not reflect.
+    # Light passes through the coat on its way in and on its way out. Integrated over all directions, the product of
+    # both shares is exactly the light that the coat does not reflect.
     o, i, mean = terms(cos_o, r.alpha), terms(cos_i, r.alpha), mean_terms(r.alpha)
     red, green, blue = _through(r.f0[0], o, i, mean), _through(r.f0[1], o, i, mean), _through(r.f0[2], o, i, mean)
     return multiply(lambert, (red, green, blue))
@@ -100,7 +100,7 @@ def evaluate_specular(r: Reflection, wo: Vec3, wi: Vec3) -> Vec3:
     if wo[2] <= 0.0 or wi[2] <= 0.0 or is_lambertian(r):
         return BLACK
     half = add(wo, wi)
-    # Shadowing and masking, with the factors of the half vector's Jacobian and the cosine of `wi`.
+    # Shadowing and masking, with the Jacobian of the half vector and the cosine of `wi`.
     shadowing = 0.5 * wi[2] / (wi[2] * _smith(wo, r.alpha) + wo[2] * _smith(wi, r.alpha))
     once = _normals(half, r.alpha) * shadowing
     grazing = _fifth_power(1.0 - 0.5 * math.sqrt(dot(half, half)))
@@ -134,7 +134,7 @@ def specular_density(r: Reflection, wo: Vec3, wi: Vec3) -> float:
 
 @compiled
 def sample_specular(r: Reflection, wo: Vec3, u1: float, u2: float) -> Vec3:
-    """A direction of the specular lobe, for uniform numbers in [0, 1); one below the horizon carries nothing."""
+    """A direction of the specular lobe, for uniform numbers in [0, 1); a direction below the horizon has no light."""
     multiple = _multiple_share(r, wo[2])
     if u1 < multiple:
         return _sample_multiple(r.alpha, u1 / multiple, u2)
@@ -144,7 +144,10 @@ def sample_specular(r: Reflection, wo: Vec3, u1: float, u2: float) -> Vec3:
 
 @compiled
 def fresnel_dielectric(cos_i: float, eta: float) -> float:
-    """Unpolarised reflectance of a smooth surface, `eta` the far side's refractive index over the near side's."""
+    """Reflectance of a smooth surface for unpolarised light.
+
+    `eta` is the refractive index behind it divided by that in front.
+    """
     squared = 1.0 - (1.0 - cos_i * cos_i) / (eta * eta)
     if squared <= 0.0:
         return 1.0
@@ -156,9 +159,9 @@ def fresnel_dielectric(cos_i: float, eta: float) -> float:
 
 @compiled
 def refract(wo: Vec3, eta: float) -> tuple[Vec3, bool]:
-    """Where light that leaves along `wo` came from on the far side, and whether there is such a direction.
+    """The direction on the far side from which light that leaves along `wo` came, and whether it exists.
 
-    `eta` is as for `fresnel_dielectric`. There is none under total reflection.
+    It does not exist under total reflection. `eta` is as in `fresnel_dielectric`.
     """
     squared = 1.0 - (wo[0] * wo[0] + wo[1] * wo[1]) / (eta * eta)
     if squared <= 0.0:
@@ -168,9 +171,9 @@ def refract(wo: Vec3, eta: float) -> tuple[Vec3, bool]:
 
 @compiled
 def _normals(half: Vec3, alpha: float) -> float:
-    """GGX's density of normals along `half`, of any length.
+    """GGX's density of normals along `half`, which may have any length.
 
-    Its tangential part, not 1 - cosine^2, tells how far a normal tilts: the latter has no digits left near the floor.
+    It uses the tangential part of `half`, because 1 - cosine^2 has no significant digits left for narrow lobes.
     """
     tangential = half[0] * half[0] + half[1] * half[1]
     upward = half[2] * half[2]
@@ -180,13 +183,13 @@ def _normals(half: Vec3, alpha: float) -> float:
 
 @compiled
 def _smith(w: Vec3, alpha: float) -> float:
-    """Cosine * (1 + 2 Lambda), with Smith's Lambda for GGX, which is also sound at the horizon."""
+    """Cosine * (1 + 2 Lambda), with Smith's Lambda for GGX, in a form that is also valid at the horizon."""
     return math.sqrt(w[2] * w[2] + alpha * alpha * (w[0] * w[0] + w[1] * w[1]))
 
 
 @compiled
 def _sample_visible_normal(wo: Vec3, alpha: float, u1: float, u2: float) -> Vec3:
-    """A normal with the density with which `wo` sees it.
+    """A normal, sampled with the density of normals visible from `wo`.
 
     Source: Dupuy and Benyoub, Sampling Visible GGX Normals with Spherical Caps, HPG 2023, listing 3.
     """
@@ -199,7 +202,7 @@ def _sample_visible_normal(wo: Vec3, alpha: float, u1: float, u2: float) -> Vec3
 
 @compiled
 def _multiple_share(r: Reflection, cos_o: float) -> float:
-    """The part of the specular lobe's albedo that comes from several hits of the surface."""
+    """The part of the specular lobe's albedo that comes from light that hits the surface several times."""
     found, mean = terms(cos_o, r.alpha), mean_terms(r.alpha)
     brightest = max(r.f0[0], r.f0[1], r.f0[2])
     return _multiple(brightest, mean) * found.lost / _coat(brightest, found, mean)
@@ -207,7 +210,7 @@ def _multiple_share(r: Reflection, cos_o: float) -> float:
 
 @compiled
 def _sample_multiple(alpha: float, u1: float, u2: float) -> Vec3:
-    """A direction with a density akin to what is lost to one hit: c / (c^2 + alpha^2) for the cosine c."""
+    """A direction with a density like the light lost to single scattering: c / (c^2 + alpha^2), c its cosine."""
     cosine = alpha * math.sqrt(math.expm1(u1 * math.log1p(1.0 / (alpha * alpha))))
     radius, (x, y) = math.sqrt(max(1.0 - cosine * cosine, 0.0)), on_circle(u2)
     return radius * x, radius * y, cosine
@@ -221,32 +224,35 @@ def _multiple_density(cosine: float, alpha: float) -> float:
 
 @compiled
 def _coat_albedo(f0: Vec3, found: Terms, mean: Terms) -> Vec3:
-    """The specular lobe's albedo, where `terms` are `found` and `mean` over the hemisphere."""
+    """The albedo of the specular lobe; `found` are its terms, and `mean` their mean over the hemisphere."""
     return _coat(f0[0], found, mean), _coat(f0[1], found, mean), _coat(f0[2], found, mean)
 
 
 @compiled
 def _coat(f0: float, found: Terms, mean: Terms) -> float:
-    """One channel of it: the light of a single hit and of several."""
+    """One channel of `_coat_albedo`: the light of a single hit and of several hits."""
     return f0 * (1.0 - found.lost - found.bias) + found.bias + _multiple(f0, mean) * found.lost
 
 
 @compiled
 def _through(f0: float, o: Terms, i: Terms, mean: Terms) -> float:
-    """One channel of the light that gets through the coat both ways, over the mean of that for one way."""
+    """One channel of the light that passes the coat both ways, divided by the mean for one way."""
     through = (1.0 - _coat(f0, o, mean)) * (1.0 - _coat(f0, i, mean))
     return through / max(1.0 - _coat(f0, mean, mean), 1e-9)
 
 
 @compiled
 def _multiple_colour(f0: Vec3, mean: Terms) -> Vec3:
-    """The share of the light lost to a single hit of the surface that leaves it after further ones."""
+    """The share of the light lost to single scattering that leaves the surface after further hits."""
     return _multiple(f0[0], mean), _multiple(f0[1], mean), _multiple(f0[2], mean)
 
 
 @compiled
 def _multiple(f0: float, mean: Terms) -> float:
-    """One channel of it: a geometric series, as each hit reflects Fresnel's mean and lets 1 - lost of that out."""
+    """One channel of `_multiple_colour`.
+
+    It is a geometric series: each hit reflects Fresnel's mean, of which the share 1 - lost leaves the surface.
+    """
     fresnel = _mix(f0, 1.0 / 21.0)
     return fresnel * fresnel * (1.0 - mean.lost) / (1.0 - fresnel * mean.lost)
 
@@ -265,5 +271,5 @@ def _fifth_power(x: float) -> float:
 
 @compiled
 def _complement(colour: Vec3) -> Vec3:
-    """What is not reflected."""
+    """1 - colour: the light that is not reflected."""
     return 1.0 - colour[0], 1.0 - colour[1], 1.0 - colour[2]

@@ -1,4 +1,4 @@
-"""The camera, its path through the scene, its rays, and where it sees a point."""
+"""The camera, its path through the scene, its rays, and its projection."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .vectors import Float64
 
 Vector = Vec3
 
-# Where no previous position exists (the point lay behind the camera): far outside any image.
+# The image position of a point that was behind the previous camera: far outside any image.
 OUTSIDE = 1e6
 
 
@@ -29,24 +29,23 @@ class Camera:
     Parameters
     ----------
     position, look_at : (x, y, z)
-        The eye and a point in the middle of the image, in scene units.
+        The eye, and the point in the middle of the image, in scene units.
     up : (x, y, z)
-        The direction that is up in the image; any length, not along the view.
+        The direction that is up in the image; it may have any length, but must not be parallel to the view.
     fov_y : float
         Vertical field of view in degrees, 0 < fov_y < 180.
     aperture : float
         Diameter of the lens in scene units, >= 0; at 0 everything is sharp. The plane through `look_at` is in focus.
     shutter : float
-        How long the shutter stays open, as a share of the time from one frame to the next, 0..1; at 0 moving things
-        are sharp.
+        The share of the time between two frames during which the shutter is open, 0..1; at 0 moving objects are sharp.
     view_height : float
-        Of an orthographic camera, whose rays are parallel: how much of the scene the image's height shows, in scene
-        units, >= 0. At 0 the camera is in perspective, and `fov_y` counts.
+        The height of the part of the scene that an orthographic camera shows, in scene units, >= 0. Its rays are
+        parallel. At 0 the camera is in perspective and uses `fov_y`.
 
     Raises
     ------
     SceneError
-        The view direction, `up` or `fov_y` span no image, or an orthographic camera has a lens.
+        If the view direction, `up` or `fov_y` span no image, or an orthographic camera has a lens.
     """
 
     position: Vector
@@ -76,7 +75,7 @@ class Camera:
         Raises
         ------
         SceneError
-            `text` has another form.
+            If `text` has another form.
         """
         try:
             parts = [tuple(float(number) for number in part.split(",")) for part in text.split("/")]
@@ -90,12 +89,12 @@ class Camera:
         return cls(vector(position), vector(look_at), vector(up), fov_y)
 
     def relative_to(self, origin: Vector) -> Camera:
-        """The same in positions relative to `origin`."""
+        """The same camera with positions relative to `origin`."""
         position, look_at = np.subtract(self.position, origin), np.subtract(self.look_at, origin)
         return replace(self, position=vector(position), look_at=vector(look_at))
 
     def basis(self) -> Float64:
-        """Rows right, up, forward: an orthonormal (3, 3) matrix that turns world directions into the camera's."""
+        """Rows right, up, forward: an orthonormal (3, 3) matrix from world directions to camera directions."""
         forward = np.subtract(self.look_at, self.position)
         forward = forward / np.linalg.norm(forward)
         right = np.cross(forward, self.up)
@@ -103,7 +102,7 @@ class Camera:
         return np.stack([right, np.cross(right, forward), forward])
 
     def lens(self, shape: tuple[int, int], clearance: float = 0.0) -> Lens:
-        """What compiled loops ask of the camera for a (height, width) image; nothing is within `clearance` of it."""
+        """The data for compiled loops, for an image of (height, width); no surface is nearer than `clearance`."""
         height, width = shape
         right, up, forward = (vector(axis) for axis in self.basis())
         focus = math.dist(self.position, self.look_at)
@@ -115,10 +114,10 @@ class Camera:
 
 
 class Lens(NamedTuple):
-    """A camera and its image: axes, pixels in a unit at distance 1, the image's middle, the lens' radius and focus.
+    """A camera and its image: axes, pixels per unit at distance 1, the image's middle, the lens' radius and focus.
 
-    Rays start at the distance `start`: single precision gets the less of their way wrong the shorter it is. Those of an
-    orthographic camera are `parallel`, and start in its plane.
+    Rays begin at the distance `start`, because the error in single precision is smaller for shorter rays. The rays of
+    an orthographic camera are `parallel`, and begin in its plane.
     """
 
     position: Vec3
@@ -136,9 +135,9 @@ class Lens(NamedTuple):
 
 @compiled
 def ray_through(lens: Lens, x: float, y: float, u: float, v: float) -> tuple[Vec3, Vec3]:
-    """Origin and unit direction of a ray through the image position (x, y); whole numbers are pixel centres.
+    """Origin and unit direction of the ray through the image position (x, y); pixel centres are at whole numbers.
 
-    `u` and `v`, uniform in [0, 1), pick the point on the lens.
+    `u` and `v`, uniform in [0, 1), choose the point on the lens.
     """
     across, above = (x - lens.middle_x) / lens.scale, (lens.middle_y - y) / lens.scale
     aside = add(scale(lens.right, across), scale(lens.up, above))
@@ -156,9 +155,9 @@ def ray_through(lens: Lens, x: float, y: float, u: float, v: float) -> tuple[Vec
 
 @compiled
 def project(lens: Lens, offset: Vec3) -> Vec3:
-    """Image position and depth (x, y, depth) of a point given relative to the eye, or of a direction.
+    """Image position and depth (x, y, depth) of a point relative to the eye, or of a direction.
 
-    Points at or behind the eye's plane land at `OUTSIDE`.
+    The position of points at or behind the eye's plane is `OUTSIDE`.
     """
     depth = dot(offset, lens.forward)
     if depth <= 0.0:
@@ -173,7 +172,7 @@ def project(lens: Lens, offset: Vec3) -> Vec3:
 class CameraPath:
     """A camera that moves through keyframes at equal times, along a Catmull-Rom spline.
 
-    The spline passes through every keyframe with continuous velocity; between two keyframes it is a straight line.
+    The spline passes through every keyframe with continuous velocity; with two keyframes it is a straight line.
 
     Parameters
     ----------
@@ -200,7 +199,7 @@ class CameraPath:
         return cls(tuple(cameras))
 
     def at(self, t: float) -> Camera:
-        """The camera at time `t`, 0 (first keyframe) to 1 (last)."""
+        """The camera at time `t`, from 0 (first keyframe) to 1 (last)."""
         if len(self.keyframes) == 1:
             return self.keyframes[0]
         keys = np.array(
@@ -209,29 +208,29 @@ class CameraPath:
         segment, s = divmod(min(max(t, 0.0), 1.0) * (len(keys) - 1), 1.0)
         if segment == len(keys) - 1:
             segment, s = segment - 1, 1.0
-        # One more keyframe at either end, in line with the last two, lets the spline reach the ends.
+        # Each end gets one more keyframe, in line with the last two, so that the spline reaches the ends.
         padded = np.concatenate([[2 * keys[0] - keys[1]], keys, [2 * keys[-1] - keys[-2]]])
         values = _catmull_rom(padded[int(segment) : int(segment) + 4], s)
-        # The spline may swing a little beyond its keyframes.
+        # The spline may overshoot its keyframes slightly.
         fov_y, aperture, shutter, view_height = values[9:].tolist()
         lens = fov_y, max(aperture, 0.0), min(max(shutter, 0.0), 1.0), max(view_height, 0.0)
         return Camera(vector(values[0:3]), vector(values[3:6]), vector(values[6:9]), *lens)
 
     def at_frame(self, number: float, frames: int) -> Camera:
-        """The camera of frame `number`, from 0, in a sequence of so many that covers the whole path."""
+        """The camera of frame `number`, from 0, in a sequence of `frames` frames that covers the whole path."""
         return self.at(number / max(frames - 1, 1))
 
 
 @dataclass(frozen=True, eq=False)
 class CarriedCamera:
-    """A camera that something carries through the world by the clock, whatever the length of the sequence.
+    """A camera that a node carries through the world; its time is in seconds, for any length of the sequence.
 
     Parameters
     ----------
     camera : Camera
-        In the space of what carries it.
+        In the space of the node that carries it.
     motion : Motion
-        From that space into the world. Its sizes move the camera, and change nothing else of it.
+        From that space into the world. Its scale moves the camera, and has no other effect on it.
     """
 
     camera: Camera
@@ -248,7 +247,7 @@ class CarriedCamera:
 
 
 def _catmull_rom(points: Float64, s: float) -> Float64:
-    """The spline through the middle two of four `points` (4, K), at `s` in 0..1 between them."""
+    """The spline between the middle two of four `points` (4, K), at `s` in 0..1."""
     weights = 0.5 * np.array(
         [
             -s + 2 * s**2 - s**3,

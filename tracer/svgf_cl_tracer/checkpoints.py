@@ -1,7 +1,7 @@
-"""Estimates kept on disk while they grow: whoever goes on with one gets, bit by bit, what a single run would have got.
+"""Estimates stored on disk while they are rendered; continuing one gives the same bits as an uninterrupted run.
 
-A file is named for the frame and its samples per pixel, ``0007.000512.npz``, and holds the arrays of an `Estimate`, not
-compressed (noise does not shrink), under the checksums of a zip archive.
+The name of a file is the number of the frame and the samples per pixel, ``0007.000512.npz``. It holds the arrays of an
+`Estimate`. They are not compressed, because noise is not compressible, and the zip archive has checksums.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from svgf_cl.io.cache import keeping
 from .estimate import Estimate, Step
 from .vectors import Float32
 
-# What reading a damaged file raises: a RuntimeError where it claims to be encrypted or of another version of zip, a
-# MemoryError where it claims to be larger than it is.
+# Errors of reading a damaged file. A RuntimeError is raised if it seems to be encrypted or to have another version of
+# zip, and a MemoryError if it claims to be larger than it is.
 DAMAGE = (
     EOFError,
     IndexError,
@@ -38,23 +38,23 @@ DAMAGE = (
 
 @dataclass(frozen=True)
 class Checkpoints:
-    """The kept estimates of one frame.
+    """The stored estimates of one frame.
 
     Parameters
     ----------
     folder : Path
-        Where they lie, beside those of other frames; made when the first is written.
+        The folder of the files of this and other frames; it is created with the first file.
     number : int
-        The frame.
+        The number of the frame.
     """
 
     folder: Path
     number: int
 
     def latest(self, start: Estimate, usable: Callable[[Estimate], bool]) -> Estimate:
-        """The one of most samples among the usable ones; `start`, which has none, if there is no other.
+        """The usable estimate with the most samples; `start`, which has no samples, if there is none.
 
-        A file that is damaged is deleted, with a warning.
+        A damaged file is deleted with a warning.
         """
         for path in sorted(self.folder.glob(f"{self.number:04d}.*.npz"), reverse=True):
             estimate = _read(path, start)
@@ -63,7 +63,10 @@ class Checkpoints:
         return start
 
     def replace(self, old: Estimate, new: Estimate) -> None:
-        """Write `new`, whole or not at all, and delete `old`, which it was made from; where that fails, `old` stays."""
+        """Write `new` completely or not at all, then delete `old`, from which it was made.
+
+        If writing fails, `old` stays.
+        """
         history = np.array(new.history, np.float64).reshape(-1, 2)
         with keeping():
             output_folder(self.folder)
@@ -76,7 +79,7 @@ class Checkpoints:
 
 
 def _read(path: Path, start: Estimate) -> Estimate | None:
-    """The estimate in a file, shaped as `start`; None where it cannot be used or has just been replaced."""
+    """The estimate in a file, with the shapes of `start`; None if it cannot be used or has just been replaced."""
     try:
         with np.load(path) as file:
             light, squares = _array(file, "light", start.light), _array(file, "squares", start.squares)
@@ -91,7 +94,7 @@ def _read(path: Path, start: Estimate) -> Estimate | None:
 
 
 def _array(file: Mapping[str, Float32], name: str, like: Float32) -> Float32:
-    """The array `name`; `ValueError` unless it is shaped as `like`."""
+    """The array `name`; `ValueError` unless it has the shape of `like`."""
     array = file[name]
     if (array.shape, array.dtype) != (like.shape, like.dtype):
         raise ValueError(f"{name}: expected {like.dtype} of shape {like.shape}, got {array.dtype} of {array.shape}")

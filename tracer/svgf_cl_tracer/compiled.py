@@ -1,4 +1,4 @@
-"""How the tracer's inner loops are compiled: by Numba, at their first call, kept on disk for the next process."""
+"""Compilation of the tracer's inner loops by Numba: at their first call, and cached on disk for the next process."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 
 def _digest() -> str:
-    """Names the state of the tracer's sources: what one function compiles to hangs on all those that it calls."""
+    """A hash of the tracer's sources: the code of a compiled function depends on all functions that it calls."""
     sources = hashlib.sha256()
     for source in sorted(Path(__file__).parent.glob("*.py")):
         sources.update(source.read_bytes())
@@ -41,10 +41,10 @@ OPTIONS: dict[str, Any] = {
 def compiled(function: Function) -> Function:
     """Compile `function` to machine code that lets other threads run; it must not allocate arrays.
 
-    It is inlined wherever another compiled function calls it: a scene's tables, hundreds of words, would be copied at
-    each call. Without allocation no array needs its references counted, which took most of the time. Arithmetic
-    follows IEEE 754 as written, but a quotient may be the product with a reciprocal, and the sign of zero is not kept:
-    a picture is the same with any number of threads.
+    It is inlined wherever another compiled function calls it, because a call would copy the tables of a scene, which
+    are hundreds of words. Without allocations, no references to arrays are counted; this counting took most of the
+    time. Arithmetic follows IEEE 754 as written, with two exceptions: a quotient may be a product with a reciprocal,
+    and the sign of zero is not kept. So a picture is the same with any number of threads.
     """
     others = vars(numba.config)["CACHE_DIR"]
     vars(numba.config)["CACHE_DIR"] = str(FOLDER)
@@ -56,5 +56,5 @@ def compiled(function: Function) -> Function:
 
 
 def was_compiled() -> bool:
-    """Whether a process before this one has compiled anything: if not, the first picture takes some twenty seconds."""
+    """Whether an earlier process has compiled anything; if not, the first picture takes some twenty seconds."""
     return any(FOLDER.rglob("*.nbi"))

@@ -1,13 +1,13 @@
-"""The demo: the built-in scene rendered at 1 sample per pixel, denoised as it comes, and held against references.
+"""The demo: renders the built-in scene at 1 sample per pixel, denoises each frame, and compares it with references.
 
-Every step leaves its result in files and the next one reads them there; what a run that was broken off has left is kept
-where it is what this one would write::
+Every step writes its results to files, from which the next step reads them. Files of an interrupted run are kept if
+this run would write the same::
 
     noisy/frame.0000.exr ...        what the tracer rendered, with its G-buffer
     filtered/frame.0000.exr ...     the filter alone
     denoised/frame.0000.exr ...     after temporal antialiasing too
-    reference/reference.0000.exr    of the compared frames only: they cost the most
-    still.0000.png                  the compared frames side by side, with the piece that differs most
+    reference/reference.0000.exr    for the compared frames only, because references take most of the time
+    still.0000.png                  the compared frames side by side, with the detail that differs most
     preview.webp                    noisy and denoised, animated
 """
 
@@ -33,20 +33,20 @@ from svgf_cl.io.pictures import is_picture, read_picture, write_picture
 from svgf_cl.io.sequence import check_leftovers
 from svgf_cl_tracer.references import CHUNK, chunks
 
-# From here on the history is long enough for the filter to be judged by.
+# From this frame on, the history is long enough to measure the filter.
 WARM = 8
-# Rays go through another point of the pixel in every frame; antialiasing makes smooth edges of that.
+# Rays pass through a different point of the pixel in every frame; antialiasing turns this into smooth edges.
 SETTINGS = DEFAULT(taa=True)
 
 
 @dataclass(frozen=True)
 class Demo:
-    """One run of the demo; call the steps from top to bottom.
+    """One run of the demo; call its steps in the order of the methods.
 
     Parameters
     ----------
     folder : Path
-        Where everything goes.
+        The folder of all files.
     frames : int
         Length of the sequence, >= 1.
     shape : (int, int)
@@ -67,21 +67,21 @@ class Demo:
 
     @property
     def compared(self) -> list[int]:
-        """Frames that are held against a reference: the first, one at the end of the warm-up, and two after it."""
+        """Frames that are compared with a reference: the first, one at the end of the warm-up, and two later."""
         last = self.frames - 1
         warm = min(WARM, last)
         return sorted({0, warm, (warm + last) // 2, last})
 
     def path(self, kind: str, number: int) -> Path:
-        """Name the file of a ``noisy``, ``filtered``, ``denoised`` or ``reference`` frame."""
+        """The path of the file of a ``noisy``, ``filtered``, ``denoised`` or ``reference`` frame."""
         return frame_path(self.folder / kind, number, "reference" if kind == "reference" else "frame")
 
     def still_path(self, number: int) -> Path:
-        """Name the file that shows a compared frame."""
+        """The path of the picture that shows a compared frame."""
         return self.folder / f"still.{number:04d}.png"
 
     def check_leftovers(self) -> None:
-        """Raise `FileError` where a folder cannot be written to, or holds frames that this run would not replace."""
+        """Raise `FileError` if a folder cannot be written to, or has frames that this run would not replace."""
         written = {
             **{kind: [self.path(kind, n) for n in range(self.frames)] for kind in ("noisy", "filtered", "denoised")},
             "reference": [self.path("reference", n) for n in self.compared],
@@ -100,7 +100,7 @@ class Demo:
             yield denoiser.profile()
 
     def _noisy(self, number: int) -> Frame:
-        """The frame that an earlier run has rendered; where there is none, it is rendered and written now."""
+        """The frame that an earlier run has rendered; if there is none, it is rendered and written now."""
         path, made_from = self.path("noisy", number), svgf_cl_tracer.frame_identity(self.shot, number)
         frame = kept_frame(path, made_from)
         if frame is None:
@@ -116,7 +116,7 @@ class Demo:
             references.write(self.path("reference", number), number, estimate)
 
     def measure(self, kind: str) -> dict[int, Metrics]:
-        """Measure the compared frames of one kind against the reference, by number."""
+        """Measure the compared frames of one kind against the references, by number."""
         return {
             number: measure(read_picture(self.path(kind, number)), read_picture(self.path("reference", number)))
             for number in self.compared

@@ -1,8 +1,8 @@
-"""How much light a rough surface reflects: its directional albedo, tabulated when the module is imported.
+"""Light reflected by a rough surface: its directional albedo, tabulated when the module is imported.
 
-A GGX lobe of width alpha with Schlick's Fresnel reflectance reflects, seen under the cosine c, the share
-f0 * scale(c, alpha) + bias(c, alpha) of the light (Karis, Real Shading in Unreal Engine 4, 2013). What scale + bias
-lack to 1 has hit the surface a second time: it is lost to a model of single scattering, and `bsdf` gives it back.
+A GGX lobe of width alpha with Schlick's Fresnel reflectance, seen under the cosine c, reflects the share f0 * scale(c,
+alpha) + bias(c, alpha) of the light (Karis, Real Shading in Unreal Engine 4, 2013). The rest of the light, 1 - scale -
+bias, has hit the surface a second time. A model of single scattering loses it; `bsdf` adds it again.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ import numpy as np
 from .compiled import compiled
 from .vectors import Float64
 
-# The narrowest lobe. A reflection is blurred by about 2 * alpha: less than a pixel of a view 60 degrees and 3840 pixels
-# wide, so it looks like a mirror. But it is still a lobe, so that every surface is sampled and weighted alike.
+# The narrowest lobe. It blurs a reflection by about 2 * alpha: less than a pixel if 3840 pixels show 60 degrees, so it
+# looks like a mirror. But it is a lobe, so that all surfaces are sampled and weighted in the same way.
 ALPHA_FLOOR = 1e-4
 
-# Nodes along the fourth root of the cosine, since the albedo bends where the cosine is about alpha; and along the root
-# of alpha, which is the perceptual roughness. The nodes are spread evenly between 0 and 1, and between FIRST and 1.
+# The nodes are even in the fourth root of the cosine (from 0 to 1), because the albedo bends where the cosine is about
+# alpha, and even in the root of alpha (from FIRST to 1), which is the perceptual roughness.
 COSINES, ALPHAS = 64, 64
 FIRST = math.sqrt(ALPHA_FLOOR)
-# Points per axis for the integral over the visible normals.
+# Points along each axis for the integral over the visible normals.
 POINTS = 16
 
 
 class Terms(NamedTuple):
-    """Two of the three shares of the light: the third, `scale`, is 1 - lost - bias."""
+    """Two of the three shares of the light; the third one, `scale`, is 1 - lost - bias."""
 
     lost: float
     bias: float
@@ -37,11 +37,12 @@ class Terms(NamedTuple):
 def _integrate(cosine: Float64, alpha: Float64) -> tuple[Float64, Float64]:
     """`lost` and `bias` for arrays of one shape, by the midpoint rule over the visible normals.
 
-    The normals are those of `bsdf.sample_specular`: over them, the lobe's integrand is only the ratio of the Smith
-    shadowing with and without masking.
+    The normals are those of `bsdf.sample_specular`. With them, the integrand is only the ratio of the Smith shadowing
+    with and without masking.
     """
     middle = (np.arange(POINTS) + 0.5) / POINTS
-    # Dense towards u = 1, the lobe's tail, which is where light is lost; one side of the plane of incidence is enough.
+    # Points are dense near u = 1, the tail of the lobe, where light is lost. One side of the plane of incidence is
+    # enough.
     u, weight, azimuth = 1.0 - middle[:, None] ** 2, 2.0 * middle[:, None], np.pi * middle
     c, a = cosine[..., None, None], alpha[..., None, None]
     sine = np.sqrt(1.0 - c * c)
@@ -61,23 +62,23 @@ def _integrate(cosine: Float64, alpha: Float64) -> tuple[Float64, Float64]:
 
 
 def _tabulate() -> tuple[Float64, Float64]:
-    """Terms (ALPHAS, COSINES, 2), and their mean over the projected hemisphere (ALPHAS, 2)."""
+    """The terms (ALPHAS, COSINES, 2), and their means over the projected hemisphere (ALPHAS, 2)."""
     roots = np.linspace(0.0, 1.0, COSINES)
     cosine, alpha = np.meshgrid(np.maximum(roots, 1e-3) ** 4, np.linspace(FIRST, 1.0, ALPHAS) ** 2)
     table = np.stack(_integrate(cosine, alpha), -1)
-    # The mean is that of the interpolated table, so that what is given back sums up to just what is lost.
+    # This is the mean of the interpolated table, so that exactly the lost light is added again.
     fine = (np.arange(1024) + 0.5) / 1024
     interpolated = np.array([[np.interp(fine, roots, row[:, k]) for k in range(2)] for row in table])
     return table, (interpolated * 8.0 * fine**7).mean(-1)
 
 
-# Constants to Numba: compiled into the code that reads them.
+# Numba treats these as constants and compiles them into the code.
 TERMS, MEANS = _tabulate()
 
 
 @compiled
 def terms(cosine: float, alpha: float) -> Terms:
-    """The terms under `cosine`, held within 0..1, for a lobe of width `alpha` in ALPHA_FLOOR..1."""
+    """The terms at `cosine`, which is clamped to 0..1, for a lobe of width `alpha` in ALPHA_FLOOR..1."""
     row, v = _node((math.sqrt(alpha) - FIRST) / (1.0 - FIRST), ALPHAS)
     column, u = _node(math.sqrt(math.sqrt(max(cosine, 0.0))), COSINES)
     return Terms(_bilinear(row, column, 0, u, v), _bilinear(row, column, 1, u, v))
@@ -94,7 +95,7 @@ def mean_terms(alpha: float) -> Terms:
 
 @compiled
 def _node(position: float, count: int) -> tuple[int, float]:
-    """The node before `position` in 0..1 among `count`, and the weight of the next."""
+    """The node before `position` in 0..1 among `count` nodes, and the weight of the next node."""
     scaled = min(max(position, 0.0), 1.0) * (count - 1)
     node = min(int(scaled), count - 2)
     return node, scaled - node

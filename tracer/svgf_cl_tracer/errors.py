@@ -1,4 +1,4 @@
-"""The one error of the tracer that a user can meet."""
+"""The tracer's error for users."""
 
 from __future__ import annotations
 

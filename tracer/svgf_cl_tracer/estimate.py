@@ -1,4 +1,4 @@
-"""Mean and spread of a picture's samples, gathered in parts that can be put together."""
+"""Mean and variance of a picture's samples, computed in parts that can be merged."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ import numpy as np
 from .compiled import compiled
 from .vectors import Float32, Float64
 
-# Squared radiance below which errors count as absolute: as in `svgf_cl.compare.metrics.relmse`.
+# Squared radiance below which errors are absolute: as in `svgf_cl.compare.metrics.relmse`.
 DARK = 0.01
 
 
 class Step(NamedTuple):
-    """What the part that made an estimate of so many samples per pixel told of their relative variance."""
+    """A part of an estimate: the samples per pixel after it was added, and the relative variance of a sample in it."""
 
     spp: int
     variance: float
@@ -24,7 +24,7 @@ class Step(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """What N pixels converge to, as far as `spp` independent samples of each tell.
+    """An estimate of the light of N pixels, from `spp` independent samples per pixel.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class Estimate:
     squares : (N, 3) float32
         Sum over the samples of the squared difference between colour and mean colour.
     history : tuple of Step
-        The estimates that this one has grown out of, one for each part that was merged; the last is itself.
+        The steps in which this estimate grew, one for each merged part; the last one is this estimate itself.
     """
 
     spp: int
@@ -45,12 +45,12 @@ class Estimate:
 
     @classmethod
     def nothing(cls, pixels: int) -> Estimate:
-        """No sample of so many pixels."""
+        """An estimate without samples."""
         return cls(0, np.zeros((pixels, 5, 3), np.float32), np.zeros((pixels, 3), np.float32))
 
     @classmethod
     def of(cls, samples: Iterable[Float32]) -> Estimate:
-        """What single samples (N, 5, 3), at least one, tell."""
+        """The estimate from single samples (N, 5, 3), at least one."""
         remaining = iter(samples)
         light = next(remaining).copy()
         squares, alone, spp = np.zeros((len(light), 3), np.float32), np.zeros((len(light), 3), np.float32), 1
@@ -61,13 +61,13 @@ class Estimate:
 
     @classmethod
     def beside(cls, parts: Iterable[Estimate]) -> Estimate:
-        """What estimates of as many samples tell of all their pixels, one part after the other."""
+        """Join estimates with the same number of samples into one estimate of all their pixels, in this order."""
         parts = list(parts)
         light, squares = (np.concatenate([getattr(part, name) for part in parts]) for name in ("light", "squares"))
         return cls(parts[0].spp, light, squares)
 
     def merged(self, other: Estimate) -> Estimate:
-        """What the samples of both tell; the other ones are at least two and none of these."""
+        """The estimate from the samples of both; `other` has at least two samples, and none of these."""
         light, squares = self.light.copy(), self.squares.copy()
         _merge(light, squares, self.spp, other.light, other.squares, other.spp)
         spp, expected = self.spp + other.spp, self if self.spp else other
@@ -82,7 +82,7 @@ class Estimate:
 
     @property
     def standard_error(self) -> Float32:
-        """Estimated standard deviation (N, 3) of `color`; infinite where there are too few samples to tell."""
+        """Estimated standard deviation (N, 3) of `color`; infinite with too few samples."""
         if self.spp < 2:
             return np.full_like(self.squares, np.inf)
         error: Float32 = np.sqrt(self.squares / np.float32(self.spp * (self.spp - 1)))
@@ -92,9 +92,10 @@ class Estimate:
     def errors(self) -> Float64:
         """Estimated relative error of each estimate in `history`.
 
-        Its square is the relMSE to be expected between the estimate and the truth: the relative variance of a sample,
-        divided by their number. That variance is a mean of what the parts tell. Each is too large while the mean that
-        it is relative to is uncertain, by a share that falls with the samples before it; hence their square as weight.
+        Its square is the expected relMSE between the estimate and the truth: the relative variance of a sample, divided
+        by the number of samples. This variance is a weighted mean over the parts. The variance of a part is too large
+        while the mean by which it is divided is uncertain. This excess decreases with the number of samples before the
+        part, so the weight of a part is the square of that number.
         """
         spp, variance = np.array(self.history, np.float64).reshape(-1, 2).T
         weight = np.concatenate([[1.0], spp[:-1] ** 2])
@@ -103,14 +104,14 @@ class Estimate:
 
     @property
     def error(self) -> float:
-        """The last of `errors`; infinite where there is none."""
+        """The last of `errors`; infinite if there is none."""
         return float(self.errors[-1]) if self.history else np.inf
 
 
 def _relative_variance(variance: Float32, color: Float32) -> float:
-    """Mean over pixels and channels of ``variance / (color**2 + DARK)``, independent estimates of both.
+    """Mean over pixels and channels of ``variance / (color**2 + DARK)``, of independent estimates of both.
 
-    Were they of the same samples, a rare bright one would hide behind the mean that it has raised itself.
+    If both were from the same samples, a rare bright sample would raise the mean and so hide its own variance.
     """
     relative = variance / (np.square(color) + np.float32(DARK))
     return float(relative.mean(dtype=np.float64))
@@ -122,8 +123,8 @@ def _merge(
 ) -> None:
     """Add other samples to the mean `light` and the `squares` of `count` samples, in place.
 
-    The formula is that of Chan, Golub, LeVeque, "Updating Formulae and a Pairwise Algorithm for Computing Sample
-    Variances" (1979): nothing cancels, however far the mean is from zero.
+    The formula is from Chan, Golub, LeVeque, "Updating Formulae and a Pairwise Algorithm for Computing Sample
+    Variances" (1979). It loses no digits by cancellation, however far the mean is from zero.
     """
     total = count + other_count
     share, spread = np.float32(other_count / total), np.float32(count * other_count / total)

@@ -1,4 +1,4 @@
-"""A digest of all that a picture depends on: alike in every process, another one as soon as a bit differs."""
+"""A hash of everything that a picture depends on: the same in every process, and different if any bit differs."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ import numpy as np
 from svgf_cl.fingerprint import code_version
 
 LIBRARIES = ("embreex", "numba", "numpy")
-# They ask for pictures, and have no part in what a picture is.
+# These modules request pictures, but do not affect their content.
 ASKING = ("cli", "demo.py")
 
 
 def fingerprint(thing: object) -> str:
-    """SHA-256, in hexadecimal digits, of numbers, texts, arrays, sequences and dataclasses of such.
+    """SHA-256, in hexadecimal digits, of numbers, texts, arrays, sequences and dataclasses of these.
 
-    Two that are equal in every bit have the same one; whether they share parts makes no difference.
+    Objects that are equal in every bit have the same hash, whether or not they share parts.
 
     Raises
     ------
     TypeError
-        There is something else in `thing`.
+        If `thing` contains an object of another kind.
     """
     return _digest(thing, {}).hex()
 
 
 @functools.cache
 def tracer_version() -> str:
-    """Fingerprint of the libraries it computes with and of its sources, the demo and the command line aside."""
+    """Hash of the tracer's sources and of the libraries it computes with, without the demo and the command line."""
     folder = Path(__file__).parent
     paths = [path for path in sorted(folder.rglob("*.py")) if path.relative_to(folder).parts[0] not in ASKING]
     sources = [(path.name, path.read_text(encoding="utf-8")) for path in paths]
@@ -40,7 +40,7 @@ def tracer_version() -> str:
 
 
 def _digest(thing: object, known: dict[int, bytes]) -> bytes:
-    """The digest; `known` holds those of the objects met before, as many materials may share a large texture."""
+    """The hash; `known` has the hashes of earlier objects, because many materials may share a large texture."""
     if id(thing) not in known:
         digest = hashlib.sha256()
         for part in _parts(thing, known):
@@ -50,7 +50,7 @@ def _digest(thing: object, known: dict[int, bytes]) -> bytes:
 
 
 def _parts(thing: object, known: dict[int, bytes]) -> Iterator[bytes | memoryview]:
-    """What is digested of one object: its kind, then its value or the digests of its parts."""
+    """The hashed parts of one object: its kind, then its value or the hashes of its parts."""
     if thing is None or isinstance(thing, bool | int | float | str):
         yield f"{type(thing).__name__} {thing!r}".encode()
     elif isinstance(thing, np.ndarray | np.generic) and not thing.dtype.hasobject:

@@ -1,4 +1,4 @@
-"""The files that an OBJ or MTL file names, beside it."""
+"""Finds the files that an OBJ or MTL file refers to."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from pathlib import Path, PurePosixPath
 
 
 def found_inside(root: Path, name: str, beside: Path) -> Path | None:
-    """The file called `name` as seen from the folder `beside`, or else from `root`; None where `root` holds none.
+    """The file `name`, relative to the folder `beside` or else to `root`; None if `root` does not contain it.
 
-    Nothing outside `root` is found. Names come from other systems: a backslash separates folders too, and where no name
-    is the same, one that differs in case alone is.
+    No file outside `root` is found. Names may come from other systems: a backslash separates folders, too. If no name
+    matches exactly, a name that differs only in case matches.
     """
     parts = PurePosixPath(name.strip().strip('"').replace("\\", "/")).parts
     if not parts or parts[0] == "/" or re.match(r"[A-Za-z]:", parts[0]):
@@ -21,7 +21,7 @@ def found_inside(root: Path, name: str, beside: Path) -> Path | None:
             path = _descended(folder, parts)
             if path and path.is_file() and path.resolve().is_relative_to(root.resolve()):
                 return path
-        except (OSError, RuntimeError, ValueError):  # a name too long or with a zero in it, a loop of links
+        except (OSError, RuntimeError, ValueError):  # a name that is too long or has a zero byte, or a loop of links
             return None
     return None
 
@@ -39,5 +39,5 @@ def _descended(folder: Path, parts: tuple[str, ...]) -> Path | None:
 
 
 def _folded(name: str) -> str:
-    """`name` without its case, and with its accents written in one way."""
+    """`name` in lower case, with accents in one normal form."""
     return unicodedata.normalize("NFC", name).casefold()

@@ -1,4 +1,4 @@
-"""The G-buffer: what a denoiser wants to know of the first surface a pixel shows."""
+"""The G-buffer: what a denoiser needs to know of the first surface that a pixel shows."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def describe(
     pixel: int,
     features: Features,
 ) -> None:
-    """Write what is known of the surface, met at `b`, `c` of `triangle`, that sends its light along `outgoing`."""
+    """Write the features of a surface: the point at `b`, `c` of `triangle`, whose light leaves along `outgoing`."""
     materials, material = tables.materials, surface.material
     glass = materials.transmissive[material]
     reflectance = (1.0, 1.0, 1.0) if glass else albedo(r, min(dot(surface.normal, outgoing), 1.0))
@@ -49,7 +49,7 @@ def describe(
 
 @compiled
 def describe_outside(lens: Lens, before: Before, direction: Vec3, pixel: int, features: Features) -> None:
-    """Write what is known where nothing was hit: the motion of a point infinitely far away."""
+    """Write the features of a miss: its motion is that of a point infinitely far away."""
     for channel in range(3):
         features.albedo[pixel, channel] = 1.0
         features.normal[pixel, channel] = 0.0

@@ -1,4 +1,4 @@
-"""The triangles of a scene at one time, and what is found where a ray hits them."""
+"""The triangles of a scene at one time, and the surface where a ray hits them."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ class Instance:
         Triangle, corner, (x, y, z) in world space; counter-clockwise seen from the front.
     material : Material
     normals : (T, 3, 3) float, optional
-        Unit shading normals at the corners; the triangles are flat where absent.
+        Unit shading normals at the corners; without them the triangles are flat.
     uv : (T, 3, 2) float, optional
-        Texture coordinates, v up; 0 where absent.
+        Texture coordinates, v up; 0 if absent.
     motion : Motion, optional
-        Carries corners and normals, which are then in the object's own space, into the world. The front goes with
-        them, though a mirroring motion makes its corners run clockwise.
+        Carries corners and normals into the world; they are then in the object's own space. The front moves with them,
+        even if a mirroring motion makes the corners clockwise.
     colours : (T, 3, 3) float, optional
         Linear colours at the corners, 0..1, that multiply the material's base colour.
 
     Raises
     ------
     SceneError
-        An array has another shape.
+        If an array has another shape.
     """
 
     corners: NDArray[np.floating]
@@ -60,7 +60,7 @@ class Instance:
 
     @property
     def masked(self) -> bool:
-        """Whether rays may pass through its surface."""
+        """Whether rays may pass through parts of its surface."""
         return self.material.alpha_cutoff is not None and self.material.base_texture is not None
 
     def corners_at(self, time: float) -> NDArray[np.floating]:
@@ -68,7 +68,7 @@ class Instance:
         return self._placed(self.corners, time)
 
     def box_at(self, time: float) -> Float64:
-        """A box (2, 3) around it in the world at `time` in seconds."""
+        """A box (2, 3) around it, in the world at `time` in seconds."""
         return self._box if self.motion is None else bounds(self._placed(corners_of_box(self._box), time))
 
     def normals_at(self, time: float) -> NDArray[np.floating]:
@@ -82,11 +82,11 @@ class Instance:
         return unit(_product(self.normals, cofactors(self.motion.matrix(time)[:3, :3])))
 
     def mirrored_at(self, time: float) -> bool:
-        """Whether its corners run clockwise seen from the front, in the world at `time` in seconds."""
+        """Whether its corners are clockwise as seen from the front, in the world at `time` in seconds."""
         return self.motion is not None and mirrors(self.motion.matrix(time))
 
     def at_rest(self, time: float) -> Instance:
-        """The same without a motion, where it is at `time` in seconds."""
+        """The same object without motion, at its place at `time` in seconds."""
         order = slice(None, None, -1) if self.mirrored_at(time) else slice(None)
         normals = None if self.normals is None else self.normals_at(time)[:, order]
         uv, colours = (None if values is None else values[:, order] for values in (self.uv, self.colours))
@@ -94,7 +94,7 @@ class Instance:
         return replace(self, corners=corners, normals=normals, uv=uv, colours=colours, motion=None)
 
     def relative_to(self, origin: Vec3) -> Instance:
-        """The same in positions relative to `origin`."""
+        """The same object with positions relative to `origin`."""
         if self.motion is None:
             return replace(self, corners=self.corners - np.array(origin, np.float64))
         return replace(self, motion=self.motion.relative_to(origin))
@@ -104,7 +104,7 @@ class Instance:
         return bounds(self.corners)
 
     def _placed(self, points: NDArray[np.floating], time: float) -> NDArray[np.floating]:
-        """Points (..., 3) of its own space in the world."""
+        """Points (..., 3) of its own space, in the world."""
         if self.motion is None:
             return points
         matrix = self.motion.matrix(time)
@@ -112,11 +112,11 @@ class Instance:
 
 
 class Triangles(NamedTuple):
-    """Triangles as arrays over their number; of three rows the last two are differences to the first corner's.
+    """Triangles as arrays. In arrays with three rows, the last two rows are differences from the first corner.
 
-    Shapes: `corners` and `normals` (T, 3, 3), `uv` (T, 3, 2), `instance` (T,), ids from 1, `material` (T,). `mirrored`
-    (T,) tells whose corners run clockwise seen from the front. `colours` (T, 3, 3), or (0, 3, 3) where no instance has
-    any.
+    Shapes: `corners` and `normals` (T, 3, 3), `uv` (T, 3, 2), `instance` (T,), with ids from 1, `material` (T,).
+    `mirrored` (T,) says whether the corners are clockwise as seen from the front. `colours` is (T, 3, 3), or (0, 3, 3)
+    if no instance has any.
     """
 
     corners: Float32
@@ -129,7 +129,7 @@ class Triangles(NamedTuple):
 
     @classmethod
     def of(cls, instances: Sequence[Instance], ids: Sequence[int], materials: Sequence[int], time: float) -> Triangles:
-        """Gather instances, of these ids and numbers of materials, at `time` in seconds."""
+        """The triangles of instances with these ids and material numbers, at `time` in seconds."""
         counts = [len(instance.corners) for instance in instances]
         uv = [np.zeros((len(i.corners), 3, 2)) if i.uv is None else i.uv for i in instances]
         return cls(
@@ -143,7 +143,7 @@ class Triangles(NamedTuple):
         )
 
     def moved(self, instances: Sequence[Instance], time: float) -> Triangles:
-        """The same where the last of them, those of `instances`, are at `time` in seconds."""
+        """The same triangles, with the last ones (those of `instances`) at `time` in seconds."""
         first = len(self.corners) - sum(len(instance.corners) for instance in instances)
         return self._replace(
             corners=np.concatenate([self.corners[:first], corners_of(instances, time)]),
@@ -153,7 +153,7 @@ class Triangles(NamedTuple):
 
 
 def _colours(instances: Sequence[Instance]) -> list[NDArray[np.floating]]:
-    """Colours (T, 3, 3) at the corners of each instance; none at all where no instance has any."""
+    """Colours (T, 3, 3) at the corners of each instance; empty if no instance has any."""
     if all(instance.colours is None for instance in instances):
         return []
     return [np.ones((len(i.corners), 3, 3)) if i.colours is None else i.colours for i in instances]
@@ -165,37 +165,39 @@ def corners_of(instances: Sequence[Instance], time: float) -> Float32:
 
 
 def normals_of(instances: Sequence[Instance], time: float) -> Float32:
-    """The first corner's normal and two differences to it (T, 3, 3) of every triangle, likewise."""
+    """The first corner's normal and two differences from it (T, 3, 3) for every triangle, likewise."""
     return _differences(_joined([instance.normals_at(time) for instance in instances], (3, 3)))
 
 
 def mirrored_of(instances: Sequence[Instance], time: float) -> NDArray[np.bool_]:
-    """Of every triangle of `instances` whether its corners run clockwise at `time` in seconds, seen from the front."""
+    """For every triangle of `instances`, whether its corners are clockwise from the front at `time` in seconds."""
     mirrored = np.array([instance.mirrored_at(time) for instance in instances], np.bool_)
     return np.repeat(mirrored, [len(instance.corners) for instance in instances])
 
 
 def mirrors(matrix: Float64) -> bool:
-    """Whether a transform (4, 4) mirrors; one that flattens does not."""
+    """Whether a transform (4, 4) mirrors; a transform that flattens does not."""
     a, b, c = matrix[:3, :3].T
-    # Rounding leaves a flattening one a determinant beside 0.
+    # Because of rounding, the determinant of a flattening transform may be slightly different from 0.
     return bool(a @ np.cross(b, c) < -1e-14 * np.linalg.norm((a, b, c), axis=1).prod())
 
 
 def cofactors(matrix: NDArray[np.floating]) -> Float64:
-    """What turns normals, up to length and sign, where `matrix` (3, 3) moves points: a flattening one has no inverse.
+    """The matrix that transforms normals, up to length and sign, if `matrix` (3, 3) transforms points.
 
-    A mirroring matrix turns normals to the other side; which side of a surface is met is not told by them.
+    It exists even if `matrix` flattens and so has no inverse. A mirroring matrix turns normals to the other side, so
+    normals do not tell which side of a surface was hit.
     """
-    a, b, c = matrix / (np.abs(matrix).max() or 1.0)  # else the products of a small scale are taken for zero
+    # without scaling, the products of a small scale would count as zero
+    a, b, c = matrix / (np.abs(matrix).max() or 1.0)
     return np.array([np.cross(b, c), np.cross(c, a), np.cross(a, b)])
 
 
 class Surface(NamedTuple):
-    """A point where a ray met the scene; both normals look to the side the ray came from.
+    """A point where a ray hit the scene; both normals point to the side from which the ray came.
 
-    `point` is on the triangle, `lift` is how far from it a ray is sure to have left it, `u` and `v` are texture
-    coordinates; `front` tells whether the ray met the front.
+    `point` is on the triangle. `lift` is the distance from the triangle at which a ray has certainly left it. `u` and
+    `v` are texture coordinates. `front` says whether the ray hit the front.
     """
 
     point: Vec3
@@ -210,7 +212,7 @@ class Surface(NamedTuple):
 
 @compiled
 def surface_at(triangles: Triangles, triangle: int, b: float, c: float, direction: Vec3) -> Surface:
-    """What a ray along `direction` met at barycentric coordinates `b`, `c` of the second and third corner."""
+    """The surface that a ray along `direction` hit; `b`, `c` are barycentric coordinates of corners 2 and 3."""
     corners = triangles.corners
     edge1, edge2 = _row(corners, triangle, 1), _row(corners, triangle, 2)
     face_normal = normalise(cross(edge1, edge2))
@@ -220,7 +222,7 @@ def surface_at(triangles: Triangles, triangle: int, b: float, c: float, directio
     normal = normalise(interpolated(triangles.normals, triangle, b, c))
     if dot(normal, face_normal) < 0.0:
         normal = scale(normal, -1.0)
-    # A shading normal that looks away from the ray, or is not a number, says nothing of the light that goes back.
+    # A shading normal that points away from the ray, or that is NaN, is useless for light that is reflected back.
     if not dot(normal, direction) < 0.0:
         normal = face_normal
     u, v = texture_coordinates(triangles, triangle, b, c)
@@ -231,10 +233,11 @@ def surface_at(triangles: Triangles, triangle: int, b: float, c: float, directio
 
 @compiled
 def lift(corners: Float32, triangle: int) -> float:
-    """How far from a point on a triangle a ray is sure to have left it.
+    """The distance from a point on a triangle at which a ray has certainly left it.
 
-    Such a point is off its plane, and Embree off in finding that again, by up to 2e-7 of the largest coordinate. The
-    sum of all stands for that, which takes longer to find.
+    Rounding moves such a point off the triangle's plane, and Embree finds the triangle with an error, too. Both errors
+    are at most 2e-7 of the largest coordinate. The code uses the sum of all coordinates instead of the largest, which
+    takes longer to find.
     """
     corner, edge1, edge2 = _row(corners, triangle, 0), _row(corners, triangle, 1), _row(corners, triangle, 2)
     return 5e-7 * (_sum(corner) + _sum(edge1) + _sum(edge2))
@@ -247,13 +250,13 @@ def _sum(vector: Vec3) -> float:
 
 @compiled
 def interpolated(values: Float32, triangle: int, b: float, c: float) -> Vec3:
-    """A corner and two differences (T, 3, 3) at barycentric coordinates, in double precision."""
+    """Values (T, 3, 3), as a corner and two differences, at barycentric coordinates, in double precision."""
     return add(_row(values, triangle, 0), add(scale(_row(values, triangle, 1), b), scale(_row(values, triangle, 2), c)))
 
 
 @compiled
 def texture_coordinates(triangles: Triangles, triangle: int, b: float, c: float) -> tuple[float, float]:
-    """Texture coordinates (u, v) at barycentric coordinates of a triangle."""
+    """Texture coordinates (u, v) at barycentric coordinates in a triangle."""
     uv = triangles.uv
     u = np.float64(uv[triangle, 0, 0]) + b * uv[triangle, 1, 0] + c * uv[triangle, 2, 0]
     v = np.float64(uv[triangle, 0, 1]) + b * uv[triangle, 1, 1] + c * uv[triangle, 2, 1]
@@ -267,7 +270,7 @@ def _row(values: Float32, triangle: int, corner: int) -> Vec3:
 
 
 def _differences(values: NDArray[np.floating]) -> Float32:
-    """Per-corner values (T, 3, C) with those of the second and third corner relative to the first."""
+    """Values per corner (T, 3, C), with the second and third corner relative to the first one."""
     result = values.astype(np.float32)
     result[:, 1:] -= result[:, :1]
     return np.ascontiguousarray(result)
@@ -278,11 +281,11 @@ def _joined(parts: Sequence[NDArray[np.floating]], shape: tuple[int, int]) -> ND
 
 
 def _product(vectors: NDArray[np.floating], matrix: Float64) -> Float64:
-    """`matrix` times each of `vectors` (..., 3), without BLAS: its rounding may hang on the number of threads."""
+    """`matrix` times each of `vectors` (..., 3), without BLAS, whose rounding may depend on the number of threads."""
     return vectors[..., :1] * matrix[:, 0] + vectors[..., 1:2] * matrix[:, 1] + vectors[..., 2:] * matrix[:, 2]
 
 
 def unit(vectors: NDArray[np.floating]) -> NDArray[np.floating]:
-    """`vectors` (..., 3) at length 1; those of length 0 as they are."""
+    """`vectors` (..., 3) with length 1; vectors of length 0 are unchanged."""
     length = np.sqrt(np.square(vectors).sum(-1, keepdims=True))
     return vectors / np.where(length > 0.0, length, 1.0)

@@ -1,4 +1,4 @@
-"""Image files of every kind that a model's textures come in, as 8-bit pixels."""
+"""Decodes images of all kinds that models use as textures, to 8-bit pixels."""
 
 from __future__ import annotations
 
@@ -14,41 +14,40 @@ from svgf_cl.errors import one_line
 from .errors import SceneError
 from .textures import Image
 
-# Of all images of a model together, 1 GB in memory: a few kilobytes may stand for as much.
+# The most pixels of all images of a model together, 1 GB in memory: a file of a few kilobytes may decode to as much.
 MAX_PIXELS = 2**28
 
-# By Pillow's names; TGA last, as it alone is not told by its first bytes.
+# Pillow's names of formats; TGA is last, because it cannot be recognised by its first bytes.
 FORMATS = ("PNG", "JPEG", "WEBP", "TIFF", "BMP", "GIF", "DDS", "TGA")
 LONGEST_SIGNATURE = 16
 
-# PNG may name one colour that is transparent. Pillow leaves it in the file's units where it unpacks pixels to 8 bits.
+# A PNG may define one colour as transparent. Pillow keeps it in the file's units when it unpacks pixels to 8 bits.
 KEY_SCALES = {"L;2": 85.0, "L;4": 17.0, "RGB;16B": 1.0 / 256.0}
 
 
 class Images:
-    """Pixels of a model's images, each decoded once however many materials show it."""
+    """The pixels of a model's images; each image is decoded once, however many materials use it."""
 
     def __init__(self) -> None:
         self._decoded: dict[str, Image] = {}
         self._room = MAX_PIXELS
 
     def pixels(self, name: str, read: Callable[[], bytes]) -> Image:
-        """Pixels (h, w, 3), or (h, w, 4) where there is opacity, uint8, as they are stored: row 0 on top.
+        """Pixels (h, w, 3), or (h, w, 4) if there is opacity, uint8, as they are stored, with row 0 on top.
 
-        Of 16 bits the upper 8 are kept. Colour profiles, gamma and the orientation in EXIF are left aside, as glTF
-        has it.
+        Of 16 bits the upper 8 are kept. Colour profiles, gamma and EXIF orientation are ignored, as glTF demands.
 
         Parameters
         ----------
         name : str
-            What errors call the image; the same name stands for the same image.
+            The image's name in errors; the same name means the same image.
         read : callable
-            Gives its file's bytes, when they are first wanted.
+            Returns the bytes of the file when they are first needed.
 
         Raises
         ------
         SceneError
-            It is damaged or of another format, or the model's images are too large together.
+            If it is damaged or of another format, or if the model's images are too large together.
         """
         if name not in self._decoded:
             try:
@@ -59,16 +58,17 @@ class Images:
                 self._decoded[name] = _unpacked(image)
             except SceneError as error:
                 raise SceneError(f"image {name}: {error}") from error
-            except Exception as error:  # Pillow raises whatever comes of a damaged file
+            except Exception as error:  # Pillow raises errors of any kind for damaged files
                 reason = one_line(error)
                 raise SceneError(f"image {name}: expected a whole image, found a damaged one ({reason})") from error
         return self._decoded[name]
 
 
 def _opened(encoded: bytes) -> PIL.ImageFile.ImageFile:
-    """The image with its header read.
+    """Open the image and read its header.
 
-    `PIL.Image.open` would refuse images within the bound of here: its own is lower, and one for the whole process.
+    `PIL.Image.open` would refuse some images that are allowed here, because it has a lower limit, for the whole
+    process.
     """
     PIL.Image.init()
     for kind in FORMATS:
@@ -76,7 +76,7 @@ def _opened(encoded: bytes) -> PIL.ImageFile.ImageFile:
         if accepts is None or accepts(encoded[:LONGEST_SIGNATURE]):
             try:
                 return factory(io.BytesIO(encoded), "")
-            except SyntaxError:  # Pillow's word for another format
+            except SyntaxError:  # Pillow's error for another format
                 continue
     raise SceneError(f"expected {', '.join(FORMATS[:-1])} or {FORMATS[-1]}, found another format or a damaged header")
 
@@ -96,7 +96,7 @@ def _unpacked(image: PIL.ImageFile.ImageFile) -> Image:
 
 
 def _sixteen_bits(image: PIL.ImageFile.ImageFile) -> Image:
-    """Grey of 16 bits, where `convert` would clip at 255."""
+    """Convert grey of 16 bits, which `convert` would clip at 255."""
     values = np.asarray(image)
     if image.mode == "F" or values.min() < 0 or values.max() > 65535:
         raise SceneError("expected whole numbers of 8 or 16 bits, found others; convert it to PNG")
@@ -108,5 +108,5 @@ def _sixteen_bits(image: PIL.ImageFile.ImageFile) -> Image:
 
 
 def _grey(values: Image) -> Image:
-    """The same in all three channels, without a copy."""
+    """The grey values in all three channels, without a copy."""
     return np.broadcast_to(values[..., None], (*values.shape, 3))

@@ -1,8 +1,8 @@
 """Path tracing: radiance and G-buffer of a batch of pixels.
 
-At every surface of a path one light is sampled (next-event estimation), and one direction is drawn from one lobe of the
-surface: it continues the path. Where that finds a light itself, both estimates are weighted. A batch goes through
-Embree as a whole; in between compiled loops shade one path after the other.
+At every surface of a path one light is sampled (next-event estimation). One direction is also sampled, from one lobe of
+the surface, and the path continues in this direction. If it hits a light, both estimates are weighted. Embree traces a
+whole batch at once; between its calls, compiled loops shade the paths one by one.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .surroundings import Moment
 from .trees import FAR, MISS, Hits, Trees
 from .vectors import Float32, Float64
 
-# Surfaces of smooth glass that a path may pass in addition to those it may be scattered at: in and out of two objects.
+# The most surfaces of smooth glass that a path may pass in addition to scattering: in and out of two objects.
 GLASS = 4
 
 
@@ -36,9 +36,9 @@ def trace(
     draws : Draws
     aim : Aim
     bounces : int
-        Surfaces that may scatter a path after the first.
+        Surfaces that may scatter a path after the first surface.
     features : Features
-        Filled with the first hits, unless it has room for no pixel.
+        Receives the first hits, unless it is empty.
 
     Returns
     -------
@@ -54,9 +54,9 @@ def trace(
     last = bounces + 1 + glass
     for depth in range(last + 1):
         if depth == last:
-            paths.scatterings.fill(0)  # whatever they still meet, they end there
+            paths.scatterings.fill(0)  # paths end at whatever they hit next
         if depth == 1 and len(features.depth):
-            hits = trees.intersect(paths.origin, paths.direction)  # whatever they meet, its distance is a feature
+            hits = trees.intersect(paths.origin, paths.direction)  # all hits, because their distance is a feature
         elif depth < last or len(tables.lights.lamps):
             hits = gains(trees, goals, paths)
         else:
@@ -75,7 +75,7 @@ def trace(
 
 
 def gains(trees: Trees, goals: Sequence[Float64], paths: Paths) -> Hits:
-    """What paths meet; of those that may not be scattered any more, only what may bring light."""
+    """The hits of paths; for paths that can no longer be scattered, only hits that can bring light."""
     if paths.scatterings.all():
         return trees.intersect(paths.origin, paths.direction)
     nowhere = np.full(len(paths.pixel), FAR, np.float32)
@@ -87,7 +87,7 @@ def gains(trees: Trees, goals: Sequence[Float64], paths: Paths) -> Hits:
 
 
 def escapes(trees: Trees, paths: Paths) -> Hits:
-    """Of paths that end wherever they arrive, in a scene without lamps: only whether they leave it."""
+    """For paths that end at their next hit, in a scene without lamps: only whether they leave the scene."""
     count = len(paths.pixel)
     blocked = trees.occluded(paths.origin, paths.direction, np.full(count, FAR, np.float32))
     nowhere = np.zeros(count, np.float32)

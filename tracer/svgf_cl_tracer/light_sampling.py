@@ -1,8 +1,8 @@
-"""Everything that shines on a point, as one distribution of directions to sample: next-event estimation.
+"""All lights of a scene as one distribution of directions to sample: next-event estimation.
 
-Emissive triangles, suns, lights without extent, and the image of the sky get an equal share of the samples each, where
-the scene has them. Within a kind, brighter ones get more. A constant sky gets none: directions drawn from the surface
-find it.
+There are four kinds: emissive triangles, suns, point and spot lights, and the image of the sky. Each kind that the
+scene has gets an equal share of the samples. Within a kind, brighter lights get more. A constant sky is not sampled:
+directions that are sampled from the surface find it well enough.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ BLACK = (0.0, 0.0, 0.0)
 class Lights(NamedTuple):
     """All lights of a scene at one time.
 
-    `kinds` are those there are. Lamps are emissive triangles: `lamp_density` is the probability per area with which a
-    point on a material is sampled. `lamp_chances` and so on are cumulative probabilities within their kind.
+    `kinds` are the kinds of light in the scene. Lamps are emissive triangles; `lamp_density` is the probability per
+    area of sampling a point on a material. `lamp_chances` and so on are cumulative probabilities within a kind.
     """
 
     kinds: NDArray[np.int64]
@@ -66,7 +66,7 @@ class Lights(NamedTuple):
         sky: SkyTable,
         time: float,
     ) -> Lights:
-        """Gather them at `time` in seconds."""
+        """The lights at `time` in seconds."""
         suns = [light for light in lights if isinstance(light, Sun) and max(light.irradiance) > 0.0]
         points = [light for light in lights if isinstance(light, PointLight) and max(light.intensity) > 0.0]
         brightness = np.array([np.dot(LUMINANCE, material.emission_at(time)) for material in materials])
@@ -101,10 +101,10 @@ class Lights(NamedTuple):
 
 
 class LightSample(NamedTuple):
-    """A direction in which light comes in.
+    """A direction from which light arrives.
 
-    `light` is radiance over `density`, the density per solid angle; that is infinite, given as 0, for a light that no
-    other direction can find.
+    `light` is radiance divided by `density`, the density per solid angle. The density is infinite, written as 0, for a
+    light that no other direction can hit.
     """
 
     direction: Vec3
@@ -117,7 +117,7 @@ class LightSample(NamedTuple):
 def sample_light(
     lights: Lights, triangles: Triangles, materials: Materials, sky: SkyTable, point: Vec3, u: Random4
 ) -> LightSample:
-    """Light that comes to `point` from one light, as if nothing were in between; there must be some light to sample."""
+    """Light from one light at `point`, as if nothing were in between; the scene must have lights to sample."""
     count = len(lights.kinds)
     place = u[0] * count
     number = min(int(place), count - 1)
@@ -137,16 +137,16 @@ def sample_light(
 
 @compiled
 def lamp_density(lights: Lights, material: int, cosine: float, distance: float) -> float:
-    """Density per solid angle with which `sample_light` finds a point of a lamp, seen at this angle and distance."""
+    """Density per solid angle with which `sample_light` samples a point of a lamp, at this angle and distance."""
     density = float(lights.lamp_density[material])
     return density * distance * distance / (max(cosine, 1e-12) * max(len(lights.kinds), 1))
 
 
 @compiled
 def outside_radiance(lights: Lights, sky: SkyTable, direction: Vec3, density: float) -> Vec3:
-    """Radiance from outside the scene that a path finds which was drawn with `density` per solid angle.
+    """Radiance from outside the scene, for a path whose direction was sampled with `density` per solid angle.
 
-    Sky and suns are sampled, and so weighted, each on its own, though one may lie before the other.
+    Sky and suns are sampled separately, so they are weighted separately, although a sun may be in front of the sky.
     """
     count = max(len(lights.kinds), 1)
     radiance = scale(sky_radiance(sky, direction), mis_weight(density, sky_density(sky, direction) / count))
@@ -159,9 +159,9 @@ def outside_radiance(lights: Lights, sky: SkyTable, direction: Vec3, density: fl
 
 @compiled
 def mis_weight(density: float, other: float) -> float:
-    """The weight of an estimate drawn with `density` where another could have been drawn with density `other`.
+    """The weight of an estimate that was sampled with `density`, if it could also be sampled with density `other`.
 
-    A density of 0 stands for that of a single direction, infinite. Source: the power heuristic of Veach, Robust Monte
+    A density of 0 means the infinite density of a single direction. Source: the power heuristic of Veach, Robust Monte
     Carlo Methods for Light Transport Simulation, 1997, 9.2.4.
     """
     return density * density / (density * density + other * other) if density > 0.0 else 1.0
@@ -198,7 +198,7 @@ def _sample_sun(lights: Lights, u: float, v: float, w: float) -> LightSample:
     if solid_angle == 0.0:
         return LightSample(middle, math.inf, scale(row(lights.sun_irradiance, number), 1.0 / chance), 0.0)
     density = chance / solid_angle
-    height = v * solid_angle / (2.0 * math.pi)  # 1 - cosine, which would lose its digits
+    height = v * solid_angle / (2.0 * math.pi)  # 1 - cosine, computed without loss of digits
     across = math.sqrt(height * (2.0 - height))
     cosine, sine = on_circle(w)
     direction = to_world((across * cosine, across * sine, 1.0 - height), middle)
@@ -225,7 +225,7 @@ def _sample_point(lights: Lights, point: Vec3, u: float) -> LightSample:
 
 @compiled
 def _in_sun(lights: Lights, number: int, direction: Vec3) -> bool:
-    # Single precision leaves a unit vector a length that is off by more than a small disc's cosine.
+    # In single precision, the error of a unit vector's length exceeds the cosine of a small disc.
     length = math.sqrt(dot(direction, direction))
     along = dot(direction, row(lights.sun_direction, number))
     return bool(lights.sun_solid_angle[number] > 0.0 and along > lights.sun_cosine[number] * length)
@@ -233,7 +233,7 @@ def _in_sun(lights: Lights, number: int, direction: Vec3) -> bool:
 
 @compiled
 def _pick(chances: Float64, u: float) -> int:
-    """The number whose span of the cumulative probabilities holds `u`."""
+    """The number whose interval of the cumulative probabilities contains `u`."""
     return min(int(np.searchsorted(chances, u, side="right")), len(chances) - 1)
 
 

@@ -1,4 +1,4 @@
-"""Lights without triangles: the sun, and lights without extent."""
+"""Lights without triangles: suns, point lights and spot lights."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ class Sun:
     direction_to_light : (x, y, z)
         From the scene towards the middle of the disc; any length.
     irradiance : (r, g, b)
-        On a plane that faces it, linear, >= 0.
+        Irradiance on a plane that faces the light, linear, >= 0.
     angular_radius : float
-        Half the angle under which it is seen, in degrees, 0 <= angular_radius < 90. At 0 it is seen neither by the
-        camera nor in a mirror.
+        Half of the angle under which it is seen, in degrees, 0 <= angular_radius < 90. At 0 it is not visible, neither
+        to the camera nor in a mirror.
     motion : Motion, optional
         Turns the direction.
 
     Raises
     ------
     SceneError
-        A number is not finite or out of its range.
+        If a number is not finite or is out of its range.
     """
 
     direction_to_light: Colour
@@ -49,18 +49,18 @@ class Sun:
             raise SceneError(f"sun: expected an angular radius in degrees in [0, 90), got {self.angular_radius}")
 
     def relative_to(self, origin: Vec3) -> Sun:
-        """The same: it is equally far from everywhere."""
+        """The same sun, because it is infinitely far away."""
         return self
 
     def direction_at(self, time: float) -> Float64:
-        """The unit vector (3,) towards the middle of the disc at `time` in seconds."""
+        """The unit vector (3,) towards the middle of the disc, at `time` in seconds."""
         direction = np.array(self.direction_to_light, np.float64)
         return _unit(direction if self.motion is None else self.motion.turn(time) @ direction)
 
 
 @dataclass(frozen=True, eq=False)
 class PointLight:
-    """A light without extent, alike in all directions or within a cone (glTF's point and spot lights).
+    """A light without extent that shines in all directions or within a cone (glTF's point and spot lights).
 
     Parameters
     ----------
@@ -70,17 +70,17 @@ class PointLight:
     direction : (x, y, z)
         The cone's axis, away from the light; any length.
     inner_angle, outer_angle : float
-        Degrees from the axis where the light begins to fade, and where it has gone; 180 without a cone. Between them
-        it falls as KHR_lights_punctual says.
+        Degrees from the axis at which the light begins to fade, and at which it ends; 180 without a cone. In between it
+        falls as KHR_lights_punctual defines.
     reach : float
-        Distance at which its light has faded to nothing (glTF's range).
+        Distance at which the light has faded to nothing (glTF's range).
     motion : Motion, optional
-        Carries position and direction.
+        Moves position and direction.
 
     Raises
     ------
     SceneError
-        A number is not finite or out of its range.
+        If a number is not finite or is out of its range.
     """
 
     position: Colour
@@ -104,14 +104,14 @@ class PointLight:
             raise SceneError(f"light: expected a reach above 0, got {self.reach}")
 
     def relative_to(self, origin: Vec3) -> PointLight:
-        """The same in positions relative to `origin`."""
+        """The same light with positions relative to `origin`."""
         if self.motion is None:
             x, y, z = np.subtract(self.position, origin).tolist()
             return replace(self, position=(x, y, z))
         return replace(self, motion=self.motion.relative_to(origin))
 
     def placed(self, time: float) -> tuple[Float64, Float64]:
-        """Position (3,) and unit direction (3,) in the world at `time` in seconds."""
+        """Position (3,) and unit direction (3,) in the world, at `time` in seconds."""
         position, direction = np.array(self.position, np.float64), np.array(self.direction, np.float64)
         if self.motion is not None:
             matrix = self.motion.matrix(time)

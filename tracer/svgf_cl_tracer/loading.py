@@ -1,4 +1,4 @@
-"""Scenes from files."""
+"""Loads scenes from files."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ from .sky import Environment
 def load_scene(
     path: str | PathLike[str], sky: Colour | Environment | None = None, *, alternative_lights: bool = False
 ) -> Scene:
-    """Load a folder with a scene.json, or a .gltf, .glb or .obj file by itself.
+    """Load a folder with a scene.json, or a single .gltf, .glb or .obj file.
 
     Parameters
     ----------
     path : path
     sky : (r, g, b) or Environment, optional
-        Radiance that comes from everywhere outside the scene, linear, >= 0; in place of the scene's own.
+        Radiance that arrives from all directions outside the scene, linear, >= 0; replaces the scene's own sky.
     alternative_lights : bool
-        Light a folder's scene by the other lights that its scene.json has.
+        Use the alternative lights of a folder's scene.json.
 
     Returns
     -------
     Scene
-        One instance for each primitive of each node, ids from 1. Its camera path is the one described, else that of
-        the file's camera, else one that frames everything.
+        One instance for each primitive of each node, with ids from 1. The camera path is the one of the description, or
+        else of the file's camera, or else shows the whole scene.
 
     Raises
     ------
     SceneError
-        The file is missing or unreadable, holds no triangle, or nothing in it emits light and no sky is given.
+        If the file is missing or unreadable, or has no triangle, or if nothing in it emits light and no sky is given.
     """
     path = Path(path)
     if path.is_dir():

@@ -1,4 +1,4 @@
-"""Materials, and how a compiled loop looks up what one is like at a point."""
+"""Materials, and their look-up in compiled loops."""
 
 from __future__ import annotations
 
@@ -21,37 +21,38 @@ Colour = tuple[float, float, float]
 
 @dataclass(frozen=True, eq=False)
 class Material:
-    """A surface, the same on both sides: glTF's metallic-roughness model, or smooth glass, that may emit light.
+    """A surface, the same on both sides: glTF's metallic-roughness model or smooth glass; it may emit light.
 
     Parameters
     ----------
     base_colour : (r, g, b)
-        Linear, 0..1: what a dielectric reflects diffusely, a metal reflects at normal incidence, or glass lets through.
+        Linear, 0..1: the diffuse reflectance of a dielectric, the reflectance of a metal at normal incidence, or the
+        share of light that glass lets through.
     emission : (r, g, b)
         Linear radiance, >= 0.
     base_texture : (h, w, 3) or (h, w, 4) uint8, optional
         sRGB image that multiplies `base_colour`; its fourth channel is the opacity that `alpha_cutoff` tests.
     emission_texture : (h, w, 3) or (h, w, 4) uint8, optional
-        sRGB image that multiplies `emission`; a fourth channel counts for nothing.
+        sRGB image that multiplies `emission`; a fourth channel is ignored.
     metallic : float
         0 (dielectric) to 1 (metal).
     roughness : float
         Perceptual roughness, 0 (mirror) to 1: the GGX width is its square.
     ior : float
-        Refractive index of a dielectric, >= 1. At 1 nothing is reflected at its coat: a Lambertian surface.
+        Refractive index of a dielectric, >= 1. At 1 the coat reflects nothing: a Lambertian surface.
     transmissive : bool
         Smooth glass: light is reflected or refracted at it, and never scattered.
     alpha_cutoff : float, optional
-        Rays pass through where the opacity is below; every point is solid where absent.
+        Rays pass through where the opacity is below this; without it, every point is solid.
     two_sided : bool
-        Emit from the back too.
+        Emit from the back, too.
     brightness : Track of (factor,), optional
-        Factor of `emission` over time: a lamp that is dimmed or switched.
+        Factor of `emission` over time, for a lamp that is dimmed or switched.
 
     Raises
     ------
     SceneError
-        A number is not finite or out of its range.
+        If a number is not finite or is out of its range.
     """
 
     base_colour: Colour = (0.8, 0.8, 0.8)
@@ -98,7 +99,7 @@ def _check_image(name: str, image: Image) -> None:
 
 
 class Materials(NamedTuple):
-    """The materials of a scene as arrays over their number; a texture's number is -1 where there is none."""
+    """The materials of a scene as arrays; the number of a missing texture is -1."""
 
     base_colour: Float64
     base_texture: NDArray[np.int64]
@@ -114,7 +115,7 @@ class Materials(NamedTuple):
 
     @classmethod
     def of(cls, materials: Sequence[Material]) -> Materials:
-        """Gather the materials, each image once."""
+        """The tables of these materials; each image is stored once."""
         images: dict[int, Image] = {}
         for material in materials:
             for image in (material.base_texture, material.emission_texture):
@@ -154,7 +155,7 @@ def emitted_radiance(materials: Materials, material: int, u: float, v: float) ->
 
 @compiled
 def is_solid(materials: Materials, material: int, u: float, v: float) -> bool:
-    """Whether a ray stops at texture coordinates (u, v) of a material."""
+    """Whether a material stops a ray at texture coordinates (u, v)."""
     texture = materials.base_texture[material]
     cutoff = float(materials.alpha_cutoff[material])
     return texture < 0 or cutoff <= 0.0 or texture_opacity(materials.textures, texture, u, v) >= cutoff

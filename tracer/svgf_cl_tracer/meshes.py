@@ -1,4 +1,4 @@
-"""From what files hold to what the tracer takes: triangles, normals, colours."""
+"""Converts meshes as files store them to the tracer's objects: triangles, normals, colours."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from .motion import Motion
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Triangles that share their corners.
+    """Triangles that share vertices.
 
     Parameters
     ----------
     vertices : (V, 3) float
     faces : (F, 3) int
-        Three vertices each, counter-clockwise seen from the front.
+        Three vertices each, counter-clockwise as seen from the front.
     normals : (V, 3) float, optional
-        The triangles are flat where absent.
+        Without them the triangles are flat.
     uv : (V, 2) float, optional
         Texture coordinates, v up.
     colours : (V, 3) float, optional
@@ -38,13 +38,13 @@ class Mesh:
 
 
 def instance(mesh: Mesh, motion: Motion, material: Material) -> Instance:
-    """`mesh` on its way through the world; at its place there where it does not move."""
+    """The object that `mesh` makes with this motion; if it does not move, its triangles are in the world."""
     normals, uv, colours = (v if v is None else v[mesh.faces] for v in (mesh.normals, mesh.uv, mesh.colours))
     found = Instance(mesh.vertices[mesh.faces], material, normals, uv, motion, colours)
     return found if motion.changes else found.at_rest(0.0)
 
 
 def colour(values: Any) -> Colour:
-    """Three numbers from three or more, or from one that stands for all."""
+    """Three numbers, from a list of three or more, or from one number for all."""
     r, g, b = np.broadcast_to(np.ravel(values).astype(float)[:3], 3)
     return float(r), float(g), float(b)

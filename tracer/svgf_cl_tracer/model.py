@@ -1,4 +1,4 @@
-"""What a model file holds, before it is described and lit."""
+"""The content of a model file, before a description adds materials and lights."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ Thing = TypeVar("Thing", "Object", "Light", "Eye")
 
 @dataclass(frozen=True, eq=False)
 class Object:
-    """An instance, and by what names the file knows it.
+    """An instance, and its names in the file.
 
     Parameters
     ----------
     instance : Instance
     nodes : tuple of str
-        Its node's name after those of the nodes above it, outermost first.
+        The names of the nodes above its node, outermost first, and the name of its node.
     material : str
     """
 
@@ -32,36 +32,36 @@ class Object:
     material: str
 
     def carried(self, motion: Motion) -> Object:
-        """The object with `motion` on top of its own."""
+        """The object with `motion` applied after its own."""
         return replace(self, instance=replace(self.instance, motion=_on_top(motion, self.instance.motion)))
 
 
 @dataclass(frozen=True, eq=False)
 class Light:
-    """A light, and the names of its node and those above it, outermost first."""
+    """A light, and the names of its node and of the nodes above it, outermost first."""
 
     light: PointLight | Sun
     nodes: tuple[str, ...]
 
     def carried(self, motion: Motion) -> Light:
-        """The light with `motion` on top of its own."""
+        """The light with `motion` applied after its own."""
         return replace(self, light=replace(self.light, motion=_on_top(motion, self.light.motion)))
 
 
 @dataclass(frozen=True, eq=False)
 class Eye:
-    """A camera, and the names of its node and those above it, outermost first."""
+    """A camera, and the names of its node and of the nodes above it, outermost first."""
 
     camera: CarriedCamera
     nodes: tuple[str, ...]
 
     @property
     def path(self) -> CameraPath | CarriedCamera:
-        """The way it takes."""
+        """The camera's path."""
         return self.camera if self.camera.motion.changes else CameraPath.static(self.camera.at_time(0.0))
 
     def carried(self, motion: Motion) -> Eye:
-        """The camera with `motion` on top of its own."""
+        """The camera with `motion` applied after its own."""
         return replace(self, camera=replace(self.camera, motion=_on_top(motion, self.camera.motion)))
 
 
@@ -75,12 +75,12 @@ class Model:
 
     @property
     def nodes(self) -> set[str]:
-        """What the nodes are called that anything hangs on."""
+        """The names of all nodes that carry an object, light or camera, directly or below them."""
         things = [item.nodes for item in self.objects] + [item.nodes for item in self.lights]
         return {name for names in (*things, self.eye.nodes if self.eye else ()) for name in names}
 
     def carried(self, nodes: frozenset[str], motion: Motion) -> Model:
-        """The model with `motion` on top of what moves those nodes and all that hangs on them."""
+        """The model, with `motion` applied to those nodes and everything below them."""
 
         def carry(item: Thing) -> Thing:
             return item.carried(motion) if nodes.intersection(item.nodes) else item
@@ -89,7 +89,7 @@ class Model:
         return replace(self, objects=[*map(carry, self.objects)], lights=[*map(carry, self.lights)], eye=eye)
 
     def painted(self, paint: Callable[[str, Material], Material]) -> Model:
-        """The model with other materials: what `paint` makes of each one's name and itself."""
+        """The model with other materials, which `paint` makes from the name and the material of each."""
         made: dict[int, Material] = {}
         objects = []
         for item in self.objects:

@@ -1,4 +1,4 @@
-"""Model files of every kind that can be read."""
+"""Loads model files of all kinds that can be read."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ LOADERS: dict[str, Callable[[Path, Float64], Model]] = {".glb": load_gltf, ".glt
 
 
 def load_model(path: Path, to_world: Float64) -> Model:
-    """Load the model at `path`, whose frame `to_world` (4, 4) leads into the world's.
+    """Load the model at `path`; `to_world` (4, 4) leads from the model's frame into the world's.
 
     Raises
     ------
     SceneError
-        The file is missing, empty, damaged, of another kind, or holds something that would be shown wrongly.
+        If the file is missing, empty, damaged or of another kind, or contains something that would be shown wrongly.
     """
     if not path.is_file():
         raise SceneError(f"{path}: no such file")
@@ -33,7 +33,7 @@ def load_model(path: Path, to_world: Float64) -> Model:
         return model
     except SceneError as error:
         raise SceneError(f"{path}: {error}") from error
-    # Files hold anything, and whatever is raised comes of it: to the user the file is unreadable.
+    # Files may contain anything, and so cause any error; for the user, the file is unreadable.
     except Exception as error:
         reason = " ".join(f"{type(error).__name__}: {error}".split())
         raise SceneError(f"{path}: cannot be read as glTF, GLB or OBJ ({reason})") from error

@@ -1,4 +1,4 @@
-"""How things move and change: values at keyframes, and the transforms they make of a rigid object."""
+"""Motion and change: values at keyframes, and the transforms of rigid objects."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ from numpy.typing import ArrayLike, NDArray
 from .errors import SceneError
 from .vectors import Float64
 
-# The least size, so that what has none keeps its directions: a lamp still shines along its axis.
+# The least scale: an object without size keeps its directions, so that a lamp still shines along its axis.
 SPECK = 1e-30
 
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """A quantity over time, given at keyframes; before the first and after the last it stays what it is there.
+    """A quantity over time, given at keyframes; before the first and after the last keyframe it is constant.
 
     Parameters
     ----------
     times : (n,) float
         Seconds, ascending.
     values : (n, C) float
-        What it is at those times.
+        The values at these times.
     step : bool
-        Hold each value until the next keyframe, in place of moving towards it in a straight line.
+        Keep each value until the next keyframe, instead of interpolating linearly.
     repeats : bool
-        Begin again after the last keyframe.
+        Repeat from the start after the last keyframe.
 
     Raises
     ------
     SceneError
-        There is no keyframe, a number is not finite, times do not ascend or do not match the values.
+        If there is no keyframe, if a number is not finite, or if times do not ascend or do not match the values.
     """
 
     times: ArrayLike
@@ -52,7 +52,7 @@ class Track:
 
     @property
     def changes(self) -> bool:
-        """Whether it is ever another one: exporters write keyframes for what stands still too."""
+        """Whether the value ever changes; exporters also write keyframes for things that do not move."""
         values = np.asarray(self.values)
         return bool((values != values[0]).any())
 
@@ -63,10 +63,10 @@ class Track:
         return values
 
     def rotation_at(self, time: float) -> Float64:
-        """The unit quaternion (4,) at `time` where the values are such: spherical linear interpolation."""
+        """The unit quaternion (4,) at `time`, if the values are quaternions, by spherical linear interpolation."""
         first, second, weight = self._between(time)
         cosine = float(first @ second)
-        if cosine < 0.0:  # the same rotation, by the shorter way
+        if cosine < 0.0:  # the same rotation, along the shorter way
             second, cosine = -second, -cosine
         angle = np.arccos(min(cosine, 1.0))
         if angle < 1e-6:
@@ -74,7 +74,7 @@ class Track:
         return _unit((np.sin((1.0 - weight) * angle) * first + np.sin(weight * angle) * second) / np.sin(angle))
 
     def _between(self, time: float) -> tuple[Float64, Float64, float]:
-        """The values at the keyframes before and after `time`, and the weight of the second."""
+        """The values at the keyframes before and after `time`, and the weight of the second one."""
         times, values = np.asarray(self.times), np.asarray(self.values)
         if self.repeats and times[-1] > times[0]:
             time = times[0] + (time - times[0]) % (times[-1] - times[0])
@@ -88,7 +88,7 @@ class Track:
 
 @dataclass(frozen=True, eq=False)
 class Keyframes:
-    """A keyframed place, turn and size; what is absent stays 0, none and 1.
+    """A translation, rotation and scale with keyframes; a missing one has no effect.
 
     Parameters
     ----------
@@ -109,11 +109,11 @@ class Keyframes:
 
     @property
     def tracks(self) -> list[Track]:
-        """Those there are."""
+        """The tracks that are not missing."""
         return [track for track in (self.translation, self.rotation, self.scale) if track is not None]
 
     def matrix(self, time: float) -> Float64:
-        """The transform (4, 4) at `time` in seconds: scaled, then turned, then moved."""
+        """The transform (4, 4) at `time` in seconds: scale first, then rotation, then translation."""
         matrix = np.eye(4)
         if self.rotation is not None:
             matrix[:3, :3] = rotation_matrix(self.rotation.rotation_at(time))
@@ -127,7 +127,7 @@ class Keyframes:
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """The way of an object: the product of its transforms, that of its outermost parent first.
+    """The motion of an object: a product of transforms, with that of its outermost parent first.
 
     Parameters
     ----------
@@ -145,14 +145,17 @@ class Motion:
     def turning(
         cls, pivot: ArrayLike, axis: ArrayLike, times: ArrayLike, degrees: ArrayLike, *, repeats: bool = False
     ) -> Motion:
-        """Rotation about `axis` (3,) through `pivot` (3,) by `degrees` (n,) at `times` (n,); less than 180 a step."""
+        """Rotation about `axis` (3,) through `pivot` (3,) by `degrees` (n,) at `times` (n,).
+
+        Each step is less than 180.
+        """
         half = np.radians(np.asarray(degrees, np.float64))[:, None] / 2.0
         quaternions = np.hstack([_unit(np.asarray(axis, np.float64)) * np.sin(half), np.cos(half)])
         turn = Keyframes(rotation=Track(times, quaternions, repeats=repeats))
         return cls([translation(pivot), turn, translation(-np.asarray(pivot, np.float64))])
 
     def relative_to(self, origin: ArrayLike) -> Motion:
-        """The same way where positions in the world are relative to `origin` (3,)."""
+        """The same motion, with positions in the world relative to `origin` (3,)."""
         return Motion([translation(-np.asarray(origin, np.float64)), *self.links])
 
     @property
@@ -162,7 +165,7 @@ class Motion:
 
     @property
     def span(self) -> tuple[float, float]:
-        """When it begins and ends to change, in seconds; (0, 0) where it never does."""
+        """The times in seconds at which it begins and ends to change; (0, 0) if it never changes."""
         tracks = [track for link in self.links if isinstance(link, Keyframes) for track in link.tracks if track.changes]
         times = [time for track in tracks for time in np.asarray(track.times)[[0, -1]]]
         return (float(min(times)), float(max(times))) if times else (0.0, 0.0)
@@ -175,7 +178,7 @@ class Motion:
         return result
 
     def turn(self, time: float) -> Float64:
-        """What turns directions (3, 3) that no size stretches, such as a camera's, at `time` in seconds."""
+        """The rotation (3, 3) of directions without any scale, such as a camera's, at `time` in seconds."""
         result = np.eye(3)
         for link in self.links:
             linear = (link.matrix(time) if isinstance(link, Keyframes) else np.asarray(link, np.float64))[:3, :3]

@@ -1,4 +1,4 @@
-"""Environments from image files."""
+"""Reads environments from image files."""
 
 from __future__ import annotations
 
@@ -20,27 +20,26 @@ from .radiance import read_radiance
 from .sky import Environment
 from .vectors import Float32, Float64
 
-# 8192 x 4096: 400 MB in memory.
+# The most pixels: 8192 x 4096, 400 MB in memory.
 MAX_PIXELS = 2**25
 
 
 def load_environment(path: str | PathLike[str], to_world: Float64 | None = None) -> Environment:
     """Read an equirectangular image of all directions, .hdr or .exr.
 
-    The picture is found by the names of channels, as `picture_channels` says, and lies on the display window; what the
-    file lacks of that is black. Other primaries than those of Rec. 709 are converted. What is no radiance is mended,
-    with a warning.
+    The picture is found by the names of channels, as in `picture_channels`. It is placed in the display window, and
+    missing pixels are black. Primaries are converted to those of Rec. 709. Invalid radiance is repaired with a warning.
 
     Parameters
     ----------
     path : path
     to_world : (3, 3) float, optional
-        Rotation from the image's frame, which `Environment` describes, into the world's; none where absent.
+        Rotation from the image's frame, which `Environment` describes, into the world; by default none.
 
     Raises
     ------
     SceneError
-        The file is missing, damaged, of another format or too large, or has no picture, or nothing finite in it.
+        If the file is missing, damaged, of another format or too large, or if it has no picture or no finite value.
     """
     path = Path(path)
     try:
@@ -69,7 +68,7 @@ def load_environment(path: str | PathLike[str], to_world: Float64 | None = None)
 
 
 def without_infinities(picture: Float32) -> tuple[Float32, list[str]]:
-    """Make NaN black and infinity the greatest finite value of a (h, w, 3) picture; say in how many pixels."""
+    """Replace NaN by 0 and infinity by the greatest finite value of a (h, w, 3) picture; say in how many pixels."""
     finite = np.isfinite(picture)
     if not finite.any():
         raise SceneError("sky: expected finite radiance, got none in the whole image")
@@ -80,11 +79,11 @@ def without_infinities(picture: Float32) -> tuple[Float32, list[str]]:
 
 
 def without_negatives(picture: Float32) -> tuple[Float32, list[str]]:
-    """Make the negative values of a (h, w, 3) picture 0; say in how many pixels."""
+    """Replace negative values of a (h, w, 3) picture by 0; say in how many pixels."""
     return np.maximum(picture, np.float32(0.0)), said(picture < 0.0, "negative, now 0")
 
 
 def said(values: npt.NDArray[np.bool_], what: str) -> list[str]:
-    """Say how many pixels have such values, (h, w, 3), if any."""
+    """A text that says how many pixels have such values, (h, w, 3), if any do."""
     count = int(values.any(axis=-1).sum())
     return [f"{count} {'pixel' if count == 1 else 'pixels'} {what}"] if count else []

@@ -1,4 +1,4 @@
-"""What a batch of paths is made of while it is traced: arrays that Embree and compiled loops hand to each other."""
+"""The data of a batch of paths: arrays that Embree and compiled loops pass to each other."""
 
 from __future__ import annotations
 
@@ -10,16 +10,17 @@ from numpy.typing import NDArray
 from .camera import Lens
 from .vectors import Float32
 
-# What a path's light is counted as: how often it was reflected, and by which lobe of the first surface.
+# Kinds of light: by how often it was reflected, and by which lobe of the first surface.
 DIRECT_DIFFUSE, DIRECT_SPECULAR, INDIRECT_DIFFUSE, INDIRECT_SPECULAR, EMISSION = range(5)
 DIFFUSE, SPECULAR = 0, 1
 
 
 class Paths(NamedTuple):
-    """Rays underway, N of them.
+    """N rays in progress.
 
-    `pixel` counts within the batch; `density` is that of the direction per solid angle, 0 where nothing but the path
-    itself finds what it leads to; `lobe` is that of the first surface; `scatterings` are left to it.
+    `pixel` is the index in the batch. `density` is the density of the direction per solid angle; 0 if no other sampling
+    method can find what the ray hits. `lobe` is that of the first surface. `scatterings` is how many more times the
+    path may be scattered.
     """
 
     origin: Float32
@@ -49,7 +50,7 @@ class Paths(NamedTuple):
 
 
 class ShadowRays(NamedTuple):
-    """Rays towards lights, and what they bring by either lobe of the first surface if nothing is in between."""
+    """Rays towards lights, and the light they bring by each lobe of the first surface if nothing is in between."""
 
     origin: Float32
     direction: Float32
@@ -93,14 +94,15 @@ class Features(NamedTuple):
         )
 
     def part(self, pixels: slice) -> Features:
-        """Those of some neighbouring pixels, which share memory."""
+        """The features of neighbouring pixels, which share memory."""
         return Features(*(values[pixels] for values in self))  # type: ignore[arg-type]  # each of its own type
 
 
 class Radiance(NamedTuple):
     """Light of N pixels, (N, 3) each: ``color = direct + indirect + emission = diffuse + specular + emission``.
 
-    Direct light was reflected once, indirect light more often; diffuse light by the diffuse lobe of the first surface.
+    Direct light was reflected once, indirect light more often; diffuse light was reflected by the diffuse lobe of the
+    first surface.
     """
 
     color: Float32
@@ -116,14 +118,14 @@ class Radiance(NamedTuple):
         return cls(*(np.empty((count, 3), np.float32) for _ in cls._fields))
 
     def part(self, pixels: slice) -> Radiance:
-        """That of some neighbouring pixels, which shares memory."""
+        """The light of neighbouring pixels, which shares memory."""
         return Radiance(*(values[pixels] for values in self))
 
 
 class Before(NamedTuple):
-    """What motion is measured from: the camera of one frame earlier, and the `corners` of the triangles that move.
+    """The previous frame, for motion: its camera, and the `corners` of the triangles that move.
 
-    Those are numbered from `first` on.
+    These triangles are numbered from `first` on.
     """
 
     lens: Lens
@@ -132,9 +134,9 @@ class Before(NamedTuple):
 
 
 class Aim(NamedTuple):
-    """Where rays go through an image `width` pixels wide: off the pixel's centre by `x`, `y`.
+    """Where rays pass through an image `width` pixels wide: at the offset `x`, `y` from the pixel's centre.
 
-    They are spread at random over a square of side `spread` around that, in pixels.
+    They are spread at random over a square around that point with the side `spread`, in pixels.
     """
 
     width: int
@@ -144,7 +146,7 @@ class Aim(NamedTuple):
 
 
 class Draws(NamedTuple):
-    """Where a batch's random numbers come from: a stream's key, the number of the sample, each pixel's number."""
+    """The source of a batch's random numbers: a stream's key, the sample's number, and each pixel's number."""
 
     key: int
     sample: int

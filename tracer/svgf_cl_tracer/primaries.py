@@ -1,4 +1,4 @@
-"""Colours of other primaries as colours of Rec. 709."""
+"""Converts colours of other primaries to Rec. 709."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from .vectors import Float32, Float64
 
 # The x and y of red, green, blue and white (D65).
 REC709 = (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290)
-SAME = 1e-3  # chromaticities that differ by less are the same ones, rounded
+SAME = 1e-3  # chromaticities that differ by less than this are equal, apart from rounding
 
-# From XYZ to responses of the eye that a change of white scales. Source: Lam, Metamerism and colour constancy,
-# University of Bradford 1985.
+# From XYZ to cone responses, which a change of white scales. Source: Lam, Metamerism and colour constancy, University
+# of Bradford 1985.
 BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])
 
 
@@ -25,12 +25,12 @@ def to_rec709(picture: Float32, chromaticities: Sequence[float] | None) -> Float
     ----------
     picture : (h, w, 3) float32
     chromaticities : 8 floats, optional
-        The x and y of red, green, blue and white; Rec. 709 where absent.
+        The x and y of red, green, blue and white; by default those of Rec. 709.
 
     Raises
     ------
     SceneError
-        No colours can have these chromaticities.
+        If no colours can have these chromaticities.
     """
     if chromaticities is None or np.allclose(chromaticities, REC709, rtol=0.0, atol=SAME):
         return picture

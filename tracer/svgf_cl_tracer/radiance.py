@@ -1,4 +1,4 @@
-"""Radiance HDR files, read not trusting their claims."""
+"""Reads Radiance HDR files, and checks their sizes first."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def read_radiance(path: Path) -> Image:
     Raises
     ------
     FileError
-        The file is missing, of another format or damaged, or claims more pixels than it can hold.
+        If the file is missing, of another format or damaged, or claims more pixels than it can contain.
     """
     require(path)
     if not path.is_file():

@@ -1,8 +1,8 @@
-"""References: what the noisy frames of a shot converge to, rendered until they are known well enough.
+"""References: the noise-free pictures of a shot, rendered until their error is small enough.
 
-A reference grows by chunks of `CHUNK` samples per pixel, always the same ones in the same order, and after each it is
-kept in the user's cache folder. So it can be broken off at any time and gone on with, by another process too; and the
-same request has the same result, bit by bit, whatever was kept and whoever traced the chunks.
+A reference is rendered in chunks of `CHUNK` samples per pixel, always the same chunks in the same order. After each
+chunk it is stored in the user's cache folder. So rendering can be interrupted at any time and continued, also by
+another process. The same request always gives the same bits, no matter what was stored and who traced the chunks.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from .shading import sum_up
 from .shot import Shot
 from .vectors import Float32
 
-# Samples per pixel between two checkpoints: what a kill costs at most, and what one task of a cluster sends back.
+# Samples per pixel between two checkpoints: the most that an interruption loses, and the size of a cluster's task.
 CHUNK = 16
 
 
@@ -41,17 +41,18 @@ class Goal:
     Parameters
     ----------
     spp : int
-        Samples per pixel at least, >= 1; there are always whole chunks of `CHUNK` of them.
+        Least number of samples per pixel, >= 1; it is rounded up to whole chunks of `CHUNK`.
     until_error : float
-        Estimated relative error (`Estimate.error`) at most, > 0.
+        Largest estimated relative error (`Estimate.error`), > 0.
 
     Raises
     ------
     SceneError
-        A number is out of its range.
+        If a number is out of its range.
     """
 
-    # Fewer samples may all have missed what makes most of the noise, and would then call themselves good.
+    # With fewer samples, all of them may have missed the main source of noise, and the estimated error would be too
+    # small.
     spp: int = 64
     until_error: float = inf
 
@@ -62,16 +63,16 @@ class Goal:
             raise SceneError(f"reference: expected an error above 0 to stop at, got {self.until_error}")
 
     def reached(self, spp: int, error: float) -> bool:
-        """Whether it is met by so many samples per pixel with that error."""
+        """Whether this number of samples per pixel with this error is good enough."""
         return spp >= self.spp and error <= self.until_error
 
     def overshot(self, estimate: Estimate) -> bool:
-        """Whether what the estimate grew out of had reached it already."""
+        """Whether an earlier step of the estimate had reached the goal already."""
         steps = zip(estimate.history[:-1], estimate.errors[:-1], strict=True)
         return any(self.reached(step.spp, error) for step, error in steps)
 
     def share(self, estimate: Estimate) -> float:
-        """How much of the work is done, 0..1: the error falls with the root of the number of samples."""
+        """How much of the work is done, 0..1; the error falls with the root of the number of samples."""
         share = estimate.spp / self.spp
         if estimate.error > self.until_error:
             share = min(share, (self.until_error / estimate.error) ** 2)
@@ -80,23 +81,23 @@ class Goal:
 
 @dataclass(frozen=True, eq=False)
 class References:
-    """What the frames of a shot converge to.
+    """The noise-free pictures of the frames of a shot.
 
     Parameters
     ----------
     shot : Shot
     seed, bounces : int
-        As in `render_frame`. No noise is shared with a frame of the same seed.
+        As in `render_frame`. They share no noise with frames of the same seed.
     jitter : bool
-        True: the mean over each pixel's square. False: what frames without jitter converge to, the radiance at its
-        centre.
+        True: the mean over each pixel's square. False: the radiance at each pixel's centre, to which frames without
+        jitter converge.
     rows : (int, int), optional
-        First row and the one after the last, of those to render; all by default.
+        The first row to render and the one after the last; by default all rows.
 
     Raises
     ------
     SceneError
-        A number is out of its range.
+        If a number is out of its range.
     """
 
     shot: Shot
@@ -114,21 +115,21 @@ class References:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """(height, width) of what is rendered."""
+        """(height, width) of the rendered part."""
         first, end = self._rows
         return end - first, self.shot.shape[1]
 
     @cached_property
     def folder(self) -> Path:
-        """Where they are kept: another one as soon as anything differs that they depend on, the tracer included."""
+        """The folder where they are stored; it depends on everything that affects them, including the tracer."""
         settings = (self.seed, self.jitter, self.bounces, self._rows, CHUNK)
         return cache.cache_folder() / "references" / fingerprint([self.shot.identity, settings])[:32]
 
     def refine(self, number: int, goal: Goal, run: Map = here) -> Iterator[Estimate]:
-        """The estimate of frame `number`: the kept one where there is one, and after each further chunk.
+        """Yield the stored estimate of frame `number`, if there is one, and the estimate after each further chunk.
 
-        It ends with the first that reaches the goal. An estimate that has gone beyond is left alone: the goal alone
-        decides what comes out.
+        It ends with the first estimate that reaches the goal. A stored estimate beyond the goal is not used, so the
+        result depends on the goal alone.
         """
         checkpoints = Checkpoints(self.folder, number)
         start = Estimate.nothing(self.shape[0] * self.shape[1])
@@ -150,9 +151,9 @@ class References:
                 return
 
     def render(self, number: int, spp: int, advance: Callable[[], None] = lambda: None) -> Estimate:
-        """The estimate of frame `number` from `spp` samples per pixel, or so many more as fill the last chunk.
+        """The estimate of frame `number` from `spp` samples per pixel, rounded up to whole chunks.
 
-        `advance` is called `chunks` times: for each chunk, kept ones included.
+        `advance` is called `chunks` times: for each chunk, including stored ones.
         """
         done = 0
         for estimate in self.refine(number, Goal(spp)):
@@ -162,23 +163,23 @@ class References:
         return estimate
 
     def picture(self, estimate: Estimate) -> Float32:
-        """The colour of an estimate as an image (H, W, 3); H counts the rendered rows."""
+        """The colour of an estimate as an image (H, W, 3), where H is the number of rendered rows."""
         return estimate.color.reshape(*self.shape, 3)
 
     def write(self, path: Path, number: int, estimate: Estimate) -> None:
-        """Write an estimate of frame `number` as an EXR file, whole or not at all.
+        """Write an estimate of frame `number` as an EXR file, completely or not at all.
 
-        It has the channels of a frame, whose G-buffer is that of the pixel centres; those of the standard error of the
-        colour, ``error.R`` and so on; and what it was made with, as attributes.
+        It has the channels of a frame, with the G-buffer of the pixel centres. It also has the standard error of the
+        colour, ``error.R`` and so on, and attributes that say how it was made.
 
         Raises
         ------
         FileError
-            The file cannot be written.
+            If the file cannot be written.
         """
         first, end = self._rows
         features = render_frame(self.shot, number, jitter=False, bounces=0).present()
-        del features["hit_distance"]  # a single sample's, nothing that converges
+        del features["hit_distance"]  # it is that of a single sample and does not converge
         fields = {name: values[first:end] for name, values in features.items()}
         radiance = Radiance.empty(len(estimate.light))
         sum_up(estimate.light, 1, radiance)
@@ -200,14 +201,14 @@ class References:
 
 
 def chunks(spp: int) -> int:
-    """How many chunks hold `spp` samples per pixel."""
+    """The number of chunks for `spp` samples per pixel."""
     return ceil(spp / CHUNK)
 
 
 def trace_chunk(
     shot: Shot, index: int, *, number: int, seed: int, jitter: bool, bounces: int, rows: tuple[int, int]
 ) -> Estimate:
-    """What chunk `index` of the samples of frame `number` says of the pixels of `rows`."""
+    """The estimate from chunk `index` of the samples of frame `number`, for the pixels of `rows`."""
     sampler = Sampler(shot, number, stream=REFERENCE, seed=seed, jitter=jitter, bounces=bounces)
     first, end = (row * shot.shape[1] for row in rows)
 

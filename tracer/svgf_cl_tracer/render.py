@@ -1,4 +1,4 @@
-"""Frames of a shot, as a renderer hands them to the denoiser, and the samples that they and references are made of."""
+"""Renders the frames of a shot, and the samples of frames and references."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ from .surroundings import Moment
 from .vec3 import Vec3
 from .vectors import Float32
 
-# Pixels that one task traces at once: few enough for what Embree and the compiled loops hand to each other to stay in a
-# core's cache, enough to amortise their calls.
+# Pixels that one task traces at once: few enough that the data between Embree and the compiled loops fits in a core's
+# cache, and enough to amortise the calls.
 TILE = 1 << 15
 
-# Moments within the time the shutter is open; each ray picks one. What moves by fewer pixels than this in that time
-# leaves no gaps between its pictures.
+# Moments while the shutter is open; each ray chooses one. An object that moves by fewer pixels than this in that time
+# shows no gaps.
 MOMENTS = 16
 
-# What a stream of random numbers is for: a reference shares no noise with the frames that are compared with it.
+# The purpose of a stream of random numbers: a reference shares no noise with the frames that are compared with it.
 FRAME, REFERENCE = 0, 1
 
 NO_FEATURES = Features.empty(0)
@@ -42,7 +42,7 @@ Result = TypeVar("Result")
 
 
 class Exposure(NamedTuple):
-    """What one moment of a frame's open shutter sees, and where that was one frame earlier."""
+    """One moment while a frame's shutter is open, and the same moment one frame earlier."""
 
     moment: Moment
     lens: Lens
@@ -69,26 +69,26 @@ def render_frame(
     ----------
     shot : Shot
     number : int
-        The frame's place in the shot, from 0; it picks the noise and the sub-pixel offset.
+        The frame's index in the shot, from 0; it determines the noise and the sub-pixel offset.
     spp : int
         Samples per pixel, >= 1. The G-buffer is the first sample's; radiance is the mean over all.
     seed : int
-        >= 0. The same seed gives the same image, whatever the number of threads.
+        >= 0. The same seed gives the same image, with any number of threads.
     jitter : bool
-        Move the first sample off the pixel centre by the frame's Halton offset, and further samples at random
+        Move the first sample off the pixel centre by the frame's Halton offset, and place further samples at random
         within the pixel.
     bounces : int
-        Surfaces that may scatter a path after the first, >= 0.
+        Surfaces that may scatter a path after the first surface, >= 0.
 
     Returns
     -------
     Frame
-        With every field, as in `Radiance` and `Features`.
+        With all fields, as in `Radiance` and `Features`.
 
     Raises
     ------
     SceneError
-        A number is out of its range.
+        If a number is out of its range.
     """
     _check(spp=(spp, 1), number=(number, 0), seed=(seed, 0), bounces=(bounces, 0))
     sampler = Sampler(shot, number, stream=FRAME, seed=seed, jitter=jitter, bounces=bounces)
@@ -110,7 +110,7 @@ def render_frame(
 def frame_identity(
     shot: Shot, number: int, *, spp: int = 1, seed: int = 0, jitter: bool = True, bounces: int = 1
 ) -> str:
-    """Fingerprint of all that `render_frame` of the same arguments depends on."""
+    """Hash of everything on which `render_frame` with the same arguments depends."""
     return fingerprint([shot.identity, number, spp, seed, jitter, bounces])
 
 
@@ -122,10 +122,10 @@ class Sampler:
     shot, number, seed, bounces
         As in `render_frame`.
     stream : int
-        What they are for: `FRAME` or `REFERENCE`.
+        The purpose of the samples: `FRAME` or `REFERENCE`.
     jitter : bool
         Spread the samples over the pixel's square: the first of a frame by the frame's Halton offset, all others at
-        random. Otherwise they go through the pixel's centre.
+        random. Otherwise they pass through the pixel's centre.
     """
 
     def __init__(self, shot: Shot, number: int, *, stream: int, seed: int, jitter: bool, bounces: int) -> None:
@@ -137,9 +137,9 @@ class Sampler:
         self._first = offset if jitter and stream == FRAME else self._further
 
     def trace(self, pixels: slice, sample: int, features: Features = NO_FEATURES) -> Float32:
-        """Light (N, 5, 3) of one sample of neighbouring pixels, which count row by row, and `features` if wanted.
+        """Light (N, 5, 3) of one sample of neighbouring pixels in row order; also fills `features`, unless it is empty.
 
-        A sample, by its number >= 0, is the same whoever traces it, and with whichever others.
+        The result depends on the number of the sample, >= 0, but not on which other samples are traced, or by whom.
         """
         draws = Draws(self._key, sample, np.arange(pixels.start, pixels.stop))
         aim = self._first if sample == 0 else self._further
@@ -159,12 +159,12 @@ class Sampler:
 
 
 def tiles(count: int) -> list[slice]:
-    """Divide so many pixels into what is traced at once."""
+    """Divide pixels into groups that are traced at once."""
     return [slice(start, min(start + TILE, count)) for start in range(0, count, TILE)]
 
 
 def _exposures(shot: Shot, number: int) -> list[Exposure]:
-    """What the moments of a frame see: a single one where nothing is blurred."""
+    """The moments of a frame: a single one if nothing is blurred."""
     shutter = shot.camera(number).shutter
     moving = shot.scene.changes or shot.camera(number) != shot.camera(number + shutter)
     opened = [shutter * (index + 0.5) / MOMENTS for index in range(MOMENTS)] if shutter and moving else [0.0]
@@ -181,7 +181,7 @@ def _exposure(shot: Shot, origin: Vec3, now: float, before: float) -> Exposure:
 
 
 def in_threads(function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:
-    """Results in the order of `items`, computed on all cores; few are ever waiting to be fetched."""
+    """Results in the order of `items`, computed on all cores; only few results wait to be fetched."""
     workers = os.cpu_count() or 1
     with ThreadPoolExecutor(workers) as pool:
         waiting: deque[Future[Result]] = deque()
@@ -197,7 +197,7 @@ def in_threads(function: Callable[[Item], Result], items: Iterable[Item]) -> Ite
 
 
 def _check(**numbers: tuple[int, int]) -> None:
-    """Raise `SceneError` unless each number reaches its minimum."""
+    """Raise `SceneError` unless each number is at least its minimum."""
     for name, (value, least) in numbers.items():
         if value < least:
             raise SceneError(f"{name}: expected at least {least}, got {value}")

@@ -1,4 +1,4 @@
-"""Random numbers, one independent stream a path, and the offsets of a frame's rays within their pixels."""
+"""Random numbers, in one independent stream for each path, and the sub-pixel offsets of frames."""
 
 from __future__ import annotations
 
@@ -27,21 +27,21 @@ def halton(index: int, base: int) -> float:
 
 
 def pixel_jitter(frame: int) -> tuple[float, float]:
-    """Sub-pixel offset (x, y) of a frame, each in (-0.5, 0.5): Halton (2, 3), looped after `JITTER_PERIOD` frames."""
+    """Sub-pixel offset (x, y) of a frame, each in (-0.5, 0.5): Halton (2, 3), repeated after `JITTER_PERIOD` frames."""
     index = frame % JITTER_PERIOD + 1
     return halton(index, 2) - 0.5, halton(index, 3) - 0.5
 
 
 def stream_key(*numbers: int) -> int:
-    """The 32-bit key of the stream that non-negative integers such as a seed and a frame's number name together."""
+    """The 32-bit key of a stream that is identified by non-negative integers, such as a seed and a frame's number."""
     return int(np.random.SeedSequence(numbers).generate_state(1)[0])
 
 
 @compiled
 def random4(key: int, pixel: int, sample: int, draw: int) -> Random4:
-    """Four uniform numbers in [0, 1): those of draw number `draw` of a pixel's sample in the stream `key`.
+    """Four uniform numbers in [0, 1): draw number `draw` of a pixel's sample, in the stream `key`.
 
-    They hang on these four numbers alone, not on what was drawn before: a picture may be traced in any order.
+    They depend on these four arguments alone, not on earlier draws, so a picture may be traced in any order.
 
     Source: pcg4d of Jarzynski & Olano, Hash Functions for GPU Rendering, JCGT 9 (3), 2020.
     """
@@ -67,9 +67,9 @@ def random4(key: int, pixel: int, sample: int, draw: int) -> Random4:
 
 @compiled
 def on_circle(u: float) -> tuple[float, float]:
-    """Cosine and sine of the angle 2 pi `u`, `u` in [0, 1), to 1e-9: a third of the time of the library's.
+    """Cosine and sine of the angle 2 pi `u`, `u` in [0, 1), with an error of 1e-9, in a third of the library's time.
 
-    Taylor's series up to the eleventh power, within an eighth of a turn of the middle of the quadrant.
+    It uses Taylor's series up to the eleventh power, within an eighth of a turn around the middle of the quadrant.
     """
     turns = 4.0 * u
     quadrant = int(turns)
@@ -78,7 +78,7 @@ def on_circle(u: float) -> tuple[float, float]:
     sine = x * (1.0 - y / 6.0 * (1.0 - y / 20.0 * (1.0 - y / 42.0 * (1.0 - y / 72.0 * (1.0 - y / 110.0)))))
     cosine = 1.0 - y / 2.0 * (1.0 - y / 12.0 * (1.0 - y / 30.0 * (1.0 - y / 56.0 * (1.0 - y / 90.0))))
     a, b = (cosine - sine) * ROOT_HALF, (cosine + sine) * ROOT_HALF
-    # Without branches, which would be guessed wrong as often as not.
+    # Without branches, because half of them would be mispredicted.
     sign = 1.0 if quadrant < 2 else -1.0
     even = quadrant % 2 == 0
     return sign * (a if even else -b), sign * (b if even else a)

@@ -1,4 +1,4 @@
-"""The scene: what is in it."""
+"""The scene: objects, lights, sky and camera path."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .surroundings import Surroundings
 from .vec3 import Vec3
 from .vectors import Float64
 
-# At how many moments of its motion it is asked where a thing is that a camera is to see.
+# The number of moments at which a moving object's position is checked, so that the camera can see all of them.
 MOMENTS = 17
 
 
@@ -30,16 +30,16 @@ class Scene:
     instances : sequence of Instance
         The objects; their ids in images count from 1 in this order.
     lights : sequence of Sun or PointLight, optional
-        Lights that are no triangles.
+        Lights without triangles.
     sky : (r, g, b) or Environment, optional
-        Radiance that comes from everywhere outside the scene, linear, >= 0; none where absent.
+        Radiance that arrives from all directions outside the scene, linear, >= 0; by default none.
     camera_path : CameraPath or CarriedCamera, optional
-        The default view; a still camera that frames everything where absent.
+        The default view; by default, a still camera that shows the whole scene.
 
     Raises
     ------
     SceneError
-        There is no triangle, a coordinate is not finite, or nothing emits light.
+        If there is no triangle, if a coordinate is not finite, or if nothing emits light.
     """
 
     def __init__(
@@ -64,11 +64,11 @@ class Scene:
         self._latest: Surroundings | None = None
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Pickled as what it is made of: Embree's trees cannot be sent to another process."""
+        """Pickle the scene's content only, because Embree's trees cannot be sent to another process."""
         return _make, (self.instances, self.lights, self.sky, self.camera_path)
 
     def around(self, origin: Vec3) -> Surroundings:
-        """The scene in positions relative to `origin`; what was made for the latest one is kept."""
+        """The scene with positions relative to `origin`; the result for the last origin is kept."""
         latest = self._latest
         if latest is None or latest.origin != origin:
             self._latest = latest = Surroundings(self, origin)
@@ -81,7 +81,7 @@ class Scene:
 
     @cached_property
     def detail(self) -> float:
-        """How small things are, of those that move in their own space: the median of all triangles' shortest edges."""
+        """The size of details, of moving objects in their own space: the median of all triangles' shortest edges."""
         corners = [instance.corners for instance in self.instances]
         edges = [np.linalg.norm(part - np.roll(part, 1, axis=1), axis=-1).min(1) for part in corners]
         return float(np.median(np.concatenate(edges)))
@@ -93,7 +93,7 @@ class Scene:
         return moves or any(material.brightness is not None for material in self.materials)
 
     def shines_outside(self) -> bool:
-        """Whether light comes from outside, from the sky or a sun."""
+        """Whether light arrives from outside, from the sky or a sun."""
         sky = self.sky.image if isinstance(self.sky, Environment) else self.sky
         suns = [light.irradiance for light in self.lights if isinstance(light, Sun)]
         return bool(sky is not None and np.max(sky) > 0.0) or any(max(sun) > 0.0 for sun in suns)
@@ -128,11 +128,11 @@ def _check(instances: Sequence[Instance]) -> None:
 
 
 def _framing(instances: Sequence[Instance]) -> Camera:
-    """A camera that sees the bounding sphere of everything, wherever it moves, from the front, a little above."""
+    """A camera that sees the bounding sphere of the scene, including all motion, from the front and a little above."""
     boxes = np.array([instance.box_at(time) for instance in instances for time in _moments(instance)])
     low, high = bounds(boxes)
     middle, radius = (low + high) / 2.0, np.linalg.norm(high - low) / 2.0
-    # A single point is seen from a distance that double precision can tell from none.
+    # A scene of a single point is viewed from a distance that double precision can represent.
     distance = max(radius, 1e-9 * np.abs(middle).max()) or 1.0
     towards = np.array([0.35, 0.3, 1.0]) / np.linalg.norm([0.35, 0.3, 1.0])
     eye = middle + towards * distance / np.sin(np.radians(Camera.fov_y / 2.0))
@@ -140,6 +140,6 @@ def _framing(instances: Sequence[Instance]) -> Camera:
 
 
 def _moments(instance: Instance) -> Float64:
-    """Times in seconds, from 0 on, that tell where it moves."""
+    """Times in seconds, from 0 on, that show where it moves."""
     first, last = (0.0, 0.0) if instance.motion is None else instance.motion.span
     return np.unique(np.maximum(np.linspace(first, last, MOMENTS), 0.0))

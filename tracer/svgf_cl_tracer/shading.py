@@ -1,4 +1,4 @@
-"""The compiled loops between two calls of Embree: they start paths, shade what they meet, and sum up their light."""
+"""The compiled loops between calls of Embree: they start paths, shade hits, and sum up light."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ from .trees import FAR, MISS, Hits
 from .vec3 import Vec3, add, dot, multiply, row, scale, to_local, to_world
 from .vectors import Float32
 
-# Random draws of a path: its place in the pixel and the shutter's time, its place on the lens, two at each surface.
+# Random draws of a path: position in the pixel and time in the shutter, point on the lens, two for each surface.
 PIXEL_DRAW, LENS_DRAW, FIRST_SURFACE_DRAW = 0, 1, 2
 
 BLACK = (0.0, 0.0, 0.0)
@@ -56,15 +56,15 @@ BLACK = (0.0, 0.0, 0.0)
 
 @compiled
 def pick_moments(draws: Draws, count: int, moments: NDArray[np.int64]) -> None:
-    """Pick one of `count` moments for each path: `moments` (N,)."""
+    """Choose one of `count` moments for each path: `moments` (N,)."""
     for index in range(len(moments)):
         moments[index] = int(random4(draws.key, draws.pixels[index], draws.sample, PIXEL_DRAW)[2] * count)
 
 
 class Vertex(NamedTuple):
-    """A surface that scatters a path: how, where the path has come from, and what it carries.
+    """A surface that scatters a path: its lobes, the incoming direction, and the throughput of the path.
 
-    `specular_share` is the chance of the specular lobe to be sampled.
+    `specular_share` is the probability of sampling the specular lobe.
     """
 
     surface: Surface
@@ -93,7 +93,7 @@ def start_paths(lens: Lens, draws: Draws, aim: Aim, scatterings: int, paths: Pat
 
 @compiled
 def deposit(light: Float32, rays: ShadowRays, blocked: NDArray[np.bool_], first: int) -> None:
-    """Add what unblocked shadow rays bring to `light`, counted as `first` and the kind after it."""
+    """Add the light of unblocked shadow rays to `light`, as the kind `first` and the kind after it."""
     for index in range(len(blocked)):
         if not blocked[index]:
             pixel = rays.pixel[index]
@@ -104,7 +104,7 @@ def deposit(light: Float32, rays: ShadowRays, blocked: NDArray[np.bool_], first:
 
 @compiled
 def sum_up(light: Float32, spp: int, radiance: Radiance) -> None:
-    """Sort the kinds of light (N, 5, 3) of so many samples into signals, per sample."""
+    """Sum the kinds of light (N, 5, 3) of `spp` samples to signals, divided by `spp`."""
     share = 1.0 / spp
     for pixel in range(len(light)):
         for channel in range(3):
@@ -138,10 +138,10 @@ def shade(
     shadows: ShadowRays,
     ahead: Paths,
 ) -> tuple[int, int]:
-    """Shade what paths have met after passing `depth` surfaces.
+    """Shade the hits of paths after `depth` surfaces.
 
-    What shines there is added to `light`; paths that may be scattered send a ray to a light, put into `shadows`, and
-    go on, put into `ahead`. Returns how many of both there are.
+    Emitted light is added to `light`. Paths that may be scattered send a ray to a light, which is written to `shadows`,
+    and continue, which is written to `ahead`. Returns the numbers of both.
     """
     shadow_count = ahead_count = 0
     for index in range(len(paths.pixel)):
@@ -213,7 +213,7 @@ def _aim(
     shadows: ShadowRays,
     count: int,
 ) -> int:
-    """Send a ray from the surface to a light, unless that cannot shine on it; returns the new count of such rays."""
+    """Send a ray from the surface to a light, unless the light cannot reach it; return the new number of such rays."""
     surface, r, share, outgoing, throughput = vertex
     origin = _lifted(surface, 1.0)
     sample = sample_light(tables.lights, tables.triangles, tables.materials, tables.sky, origin, u)
@@ -239,7 +239,7 @@ def _aim(
         shadows.direction[count, channel] = sample.direction[channel]
         shadows.light[count, DIFFUSE, channel] = light[channel] * diffuse[channel]
         shadows.light[count, SPECULAR, channel] = light[channel] * specular[channel]
-    # End in front of the lamp, as far as rays start in front of a surface.
+    # The ray ends in front of the lamp, at the same distance at which rays start from a surface.
     shadows.distance[count] = min(max(sample.distance * (1.0 - 1e-4) - surface.lift, 0.0), FAR)
     shadows.pixel[count] = pixel
     return count + 1
@@ -247,7 +247,10 @@ def _aim(
 
 @compiled
 def _scatter(vertex: Vertex, u: Random4, paths: Paths, index: int, depth: int, ahead: Paths, count: int) -> int:
-    """Draw a direction from one lobe and go on along it, unless it brings nothing; returns the new count of paths."""
+    """Sample a direction from one lobe and continue along it, unless it carries no light.
+
+    Return the new number of paths.
+    """
     surface, r, share, outgoing, throughput = vertex
     if u[0] < share:
         wo = to_local(outgoing, surface.normal)
@@ -259,7 +262,7 @@ def _scatter(vertex: Vertex, u: Random4, paths: Paths, index: int, depth: int, a
         density = (1.0 - share) * diffuse_density(wi[2])
         reflected = evaluate_diffuse(r, dot(outgoing, surface.normal), wi[2])
     onward = to_world(wi, surface.normal)
-    # The shading normal can send a direction below the true surface, where no light comes from.
+    # With a shading normal, a direction may be below the true surface, where no light arrives from.
     if density <= 0.0 or dot(onward, surface.face_normal) <= 0.0:
         return count
     throughput = multiply(throughput, scale(reflected, 1.0 / density))
@@ -284,7 +287,7 @@ def _pass_glass(
     ahead: Paths,
     count: int,
 ) -> int:
-    """Reflect or refract a path at smooth glass of some `colour`; returns the new count of paths."""
+    """Reflect or refract a path at smooth glass with this `colour`; return the new number of paths."""
     surface, _, _, outgoing, throughput = vertex
     ior = tables.materials.ior[surface.material]
     eta = ior if surface.front else 1.0 / ior
@@ -292,7 +295,7 @@ def _pass_glass(
     wi, side = (-wo[0], -wo[1], wo[2]), 1.0
     if u[0] >= fresnel_dielectric(wo[2], eta):
         wi, side = refract(wo, eta)[0], -1.0
-        if surface.front:  # the colour counts once for the way in and out
+        if surface.front:  # the colour counts once for the way in and out together
             throughput = multiply(throughput, colour)
     onward = to_world(wi, surface.normal)
     if dot(onward, surface.face_normal) * side <= 0.0:
@@ -306,7 +309,7 @@ def _pass_glass(
 
 @compiled
 def _lifted(surface: Surface, side: float) -> Vec3:
-    """Where a ray starts that leaves the surface: on the side its normals look to (1), or on the other (-1)."""
+    """The origin of a ray that leaves the surface on the side of its normals (1) or on the other side (-1)."""
     return add(surface.point, scale(surface.face_normal, side * surface.lift))
 
 

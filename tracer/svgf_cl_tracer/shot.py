@@ -15,17 +15,17 @@ from .vec3 import Vec3
 
 Shape = tuple[int, int]
 
-# Of the size of a scene's details, how far the origin stays behind the camera: single precision, with 2^-24 of it, then
-# misplaces things by a ten-thousandth of their size.
+# The share of a detail's size by which the origin stays behind the camera. Single precision, with a relative error of
+# 2^-24, then misplaces objects by a ten-thousandth of that size.
 STEP = 1000.0
 
 
 @dataclass(frozen=True, eq=False)
 class Shot:
-    """What the frames of a sequence show.
+    """A sequence of frames: what they show, and when.
 
-    The camera covers the whole of its path, however many frames there are; objects, lamps and a camera that one of them
-    carries keep the time of a clock.
+    The camera covers its whole path, for any number of frames. The time of objects, lamps and carried cameras is in
+    seconds.
 
     Parameters
     ----------
@@ -35,14 +35,14 @@ class Shot:
     frames : int
         Length of the sequence, >= 1.
     camera_path : CameraPath or CarriedCamera, optional
-        The scene's own where absent.
+        By default the path of the scene.
     fps : float
         Frames per second, > 0.
 
     Raises
     ------
     SceneError
-        A number is out of its range.
+        If a number is out of its range.
     """
 
     scene: Scene
@@ -61,22 +61,22 @@ class Shot:
 
     @cached_property
     def identity(self) -> str:
-        """Fingerprint of all that its frames depend on: scene, camera, size, length, and the tracer's own version."""
+        """Hash of everything on which its frames depend: scene, camera, size, length, and the version of the tracer."""
         scene = self.scene
         seen = (scene.instances, scene.lights, scene.sky, self.camera_path or scene.camera_path)
         return fingerprint([seen, self.shape, self.frames, self.fps, tracer_version()])
 
     def camera(self, number: float) -> Camera:
-        """The camera of frame `number`, from 0; the one of frame 3.5 is halfway to the next."""
+        """The camera of frame `number`, from 0; the camera of frame 3.5 is halfway to that of frame 4."""
         path = self.camera_path or self.scene.camera_path
         if isinstance(path, CarriedCamera):
             return path.at_time(self.time(number))
         return path.at_frame(number, self.frames)
 
     def origin(self, number: int) -> Vec3:
-        """The point that positions in frame `number` are relative to: the scene's nearest to the camera, or near that.
+        """The origin of positions in frame `number`: the scene's point nearest to the camera, or a point near that.
 
-        It follows the camera in large steps, as a scene's trees are built anew at each.
+        It follows the camera in large steps, because the scene's trees are built anew for each new origin.
         """
         first, here = (self.scene.nearest(self.camera(at).position, self.time(at)) for at in (0, number))
         if (first == here).all():

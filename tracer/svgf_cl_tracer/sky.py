@@ -1,8 +1,8 @@
-"""Light from everywhere outside the scene: a constant, or an image all around.
+"""Light from all directions outside the scene: a constant, or an image.
 
-An image is read with bilinear interpolation, and directions are sampled with a density that is interpolated likewise:
-a texel is picked in proportion to its luminance and solid angle, then a point around it under the filter's tent. So
-radiance over density varies little, also beside a sun one texel wide.
+An image is read with bilinear interpolation, and directions are sampled with a density that is interpolated in the same
+way. A texel is chosen in proportion to its luminance and solid angle, and then a point around it under the tent of the
+interpolation. So radiance divided by density varies little, even beside a sun that is one texel wide.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ class Environment:
     Parameters
     ----------
     image : (h, w, 3) float32
-        Linear radiance, finite, >= 0; row 0 is straight up. In the image's own frame (+y up) its middle column lies
-        towards +z, and +x is a quarter turn to the left of it: OpenEXR's convention for latitude-longitude maps.
+        Linear radiance, finite, >= 0; row 0 is straight up. In the image's own frame (+y up), the middle column is in
+        the direction +z, and +x is a quarter turn to its left: OpenEXR's convention for latitude-longitude maps.
     to_world : (3, 3) float
         Rotation from the image's frame into the world's.
 
     Raises
     ------
     SceneError
-        The image has another shape or holds a value that is no radiance, or `to_world` is no rotation.
+        If the image has another shape or an invalid radiance, or if `to_world` is not a rotation.
     """
 
     image: Float32
@@ -59,13 +59,13 @@ class SkyTable(NamedTuple):
     Attributes
     ----------
     mean_radiance : Vec3
-        Over all directions.
+        The mean over all directions.
     image : (h, w, 3) float32
-        As in `Environment`; one texel for a constant.
+        As in `Environment`; one texel for a constant sky.
     rows : (h + 1,) float64
-        Probability of all rows before each; empty where there is nothing to sample.
+        The cumulative probability before each row; empty if there is nothing to sample.
     columns : (h, w + 1) float32
-        Within each row, probability of all texels before each.
+        Within each row, the cumulative probability before each texel.
     to_world : (3, 3) float64
         As in `Environment`.
     """
@@ -80,7 +80,7 @@ class SkyTable(NamedTuple):
 def sky_table(sky: Vec3 | Environment | None) -> SkyTable:
     """The table of a constant radiance, an image, or darkness.
 
-    Only an image is for `sample_sky`: a constant is found well enough by directions that suit the surface.
+    `sample_sky` samples only images, because directions sampled from the surface find a constant sky well enough.
     """
     if not isinstance(sky, Environment):
         red, green, blue = (0.0, 0.0, 0.0) if sky is None else sky
@@ -108,7 +108,7 @@ def _distribution(weights: Float64) -> tuple[Float64, Float32]:
 
 @compiled
 def sky_radiance(table: SkyTable, direction: Vec3) -> Vec3:
-    """Radiance that comes from the unit vector `direction`."""
+    """Radiance that arrives from the unit vector `direction`."""
     if table.rows.size == 0:
         return table.mean_radiance
     column, row, _ = _position(table, direction)
@@ -126,7 +126,7 @@ def sky_radiance(table: SkyTable, direction: Vec3) -> Vec3:
 
 @compiled
 def sky_density(table: SkyTable, direction: Vec3) -> float:
-    """Density of `sample_sky` per solid angle; 0 where there is nothing to sample."""
+    """Density of `sample_sky` per solid angle; 0 if there is nothing to sample."""
     if table.rows.size == 0:
         return 0.0
     column, row, sine = _position(table, direction)
@@ -137,7 +137,7 @@ def sky_density(table: SkyTable, direction: Vec3) -> float:
 def sample_sky(table: SkyTable, u1: float, u2: float) -> tuple[Vec3, float]:
     """A direction and its density per solid angle, for uniform numbers in [0, 1).
 
-    Where there is nothing to sample the density is 0.
+    The density is 0 if there is nothing to sample.
     """
     if table.rows.size == 0:
         return (0.0, 1.0, 0.0), 0.0
@@ -172,21 +172,21 @@ def _position(table: SkyTable, direction: Vec3) -> tuple[float, float, float]:
 
 @compiled
 def _neighbours_around(position: float, count: int) -> tuple[int, int, float]:
-    """The texels of a row that loops around before and after `position` in 0..count, and the weight of the latter."""
+    """The texels before and after `position` in 0..count, in a row that wraps around, and the second one's weight."""
     before = int(np.floor(position - 0.5))
     return int(before) % count, (int(before) + 1) % count, position - 0.5 - before
 
 
 @compiled
 def _neighbours(position: float, count: int) -> tuple[int, int, float]:
-    """The texels of a column before and after `position` in 0..count, and the weight of the latter."""
+    """The texels before and after `position` in 0..count, in a column, and the weight of the second one."""
     before = int(np.floor(position - 0.5))
     return max(int(before), 0), min(int(before) + 1, count - 1), position - 0.5 - before
 
 
 @compiled
 def _density(table: SkyTable, column: float, row: float, sine: float) -> float:
-    """Density at a position in the image, per solid angle: the texels' probabilities, interpolated."""
+    """Density per solid angle at a position in the image: the probabilities of the texels, interpolated."""
     height, width = table.image.shape[0], table.image.shape[1]
     left, right, u = _neighbours_around(column, width)
     upper, lower, v = _neighbours(row, height)
@@ -206,12 +206,12 @@ def _probability(table: SkyTable, row: int, column: int) -> float:
 
 @compiled
 def _pick(cumulative: Float64, u: float) -> tuple[int, float]:
-    """The interval of `cumulative` that has `u` in it, and where between its ends."""
+    """The interval of `cumulative` that contains `u`, and the position of `u` between its ends."""
     index = np.searchsorted(cumulative, u, side="right") - 1
     return index, (u - cumulative[index]) / (cumulative[index + 1] - cumulative[index])
 
 
 @compiled
 def _tent(u: float) -> float:
-    """An offset in -1..1 under a tent, for a uniform number."""
+    """An offset in -1..1 with the density of a tent, for a uniform number."""
     return math.sqrt(2.0 * u) - 1.0 if u < 0.5 else 1.0 - math.sqrt(2.0 - 2.0 * u)

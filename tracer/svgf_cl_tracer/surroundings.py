@@ -1,7 +1,7 @@
-"""What a scene makes at a moment, in positions relative to an origin, ready to be traced.
+"""The tables and trees of a scene at a moment, with positions relative to an origin, ready for tracing.
 
-Rays and triangles are in single precision, whose numbers are the finer the nearer they are to 0. So the origin is put
-near what is seen, and whatever has a position is moved there in double precision first: here, and nowhere else.
+Rays and triangles are in single precision, which is finer near 0. So the origin is near the visible part of the scene,
+and all positions are moved there first, in double precision. This happens here and nowhere else.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class Tables(NamedTuple):
-    """Everything about a scene at one moment that compiled loops look up."""
+    """All tables of a scene at one moment that compiled loops read."""
 
     triangles: Triangles
     materials: Materials
@@ -36,7 +36,7 @@ class Tables(NamedTuple):
 class Moment(NamedTuple):
     """A scene at one time.
 
-    `goals` are boxes (2, 3): paths that may not be scattered any more bring no light unless they pass one of them.
+    `goals` are boxes (2, 3): a path that can no longer be scattered brings no light unless it passes one of them.
     """
 
     tables: Tables
@@ -45,18 +45,18 @@ class Moment(NamedTuple):
 
 
 class Surroundings:
-    """A scene around an origin: trees over all that stands still, and what else is needed for any moment.
+    """A scene around an origin: trees of everything that does not move, and the data for any moment.
 
     Parameters
     ----------
     scene : Scene
     origin : (x, y, z)
-        In the scene's own positions.
+        In the scene's own coordinates.
     """
 
     def __init__(self, scene: Scene, origin: Vec3) -> None:
         self.origin = origin
-        # Neighbours in the table share a tree: what stands still before what moves, the solid before the masked.
+        # Neighbours in the table share a tree: still objects come before moving ones, and solid before masked ones.
         ordered = sorted(enumerate(scene.instances, 1), key=lambda each: (each[1].motion is not None, each[1].masked))
         instances = [instance.relative_to(origin) for _, instance in ordered]
         still = [instance for instance in instances if instance.motion is None]
@@ -76,7 +76,7 @@ class Surroundings:
         return self._always or self._moment(time)
 
     def corners_at(self, time: float) -> Float32:
-        """First corner and edges (M, 3, 3) of the triangles that move, from `first_moving` on, at `time` in seconds."""
+        """First corner and edges (M, 3, 3) of the moving triangles, from `first_moving` on, at `time` in seconds."""
         return corners_of(self._moving, time)
 
     def _moment(self, time: float) -> Moment:
@@ -88,7 +88,7 @@ class Surroundings:
         return Moment(Tables(triangles, looks, lights, self._sky), Trees(trees, triangles, looks), self._boxes(time))
 
     def _boxes(self, time: float) -> tuple[Float64, ...]:
-        """A box for each material that shines or lets light through; everywhere, where light comes from outside."""
+        """A box for each material that emits or transmits light; everything, if light arrives from outside."""
         if self._goals is None:
             return (EVERYWHERE,)
         boxes: dict[int, list[Float64]] = {}
@@ -102,7 +102,7 @@ def _is_goal(instance: Instance) -> bool:
 
 
 def _grow(instances: Sequence[Instance], triangles: Triangles, first: int) -> list[Tree]:
-    """The trees over `instances`, whose triangles begin at `first` in the table: solid ones, masked ones."""
+    """The trees of solid and of masked triangles of `instances`, which begin at `first` in the table."""
     trees = []
     for masked in (False, True):
         count = sum(len(instance.corners) for instance in instances if instance.masked == masked)

@@ -1,4 +1,4 @@
-"""All textures of a scene in one array, and how a compiled loop reads them."""
+"""All textures of a scene in one array, and their look-up in compiled loops."""
 
 from __future__ import annotations
 
@@ -20,14 +20,15 @@ def srgb_to_linear(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
 
 
-# Linear value of every 8-bit sRGB code.
+# The linear value of every 8-bit sRGB code.
 LINEAR = srgb_to_linear(np.arange(256) / 255.0).astype(np.float32)
 
 
 class Textures(NamedTuple):
-    """sRGB images, row 0 on top, read with bilinear filtering and repeat wrap.
+    """sRGB images, row 0 on top, read with bilinear filtering and repeated at their edges.
 
-    A texel is one packed uint32, red lowest, opacity highest: a quarter of the memory of linear floats.
+    A texel is one packed uint32, with red in the lowest bits and opacity in the highest: a quarter of the memory of
+    floats.
     """
 
     texels: NDArray[np.uint32]
@@ -72,7 +73,7 @@ def texture_colour(textures: Textures, texture: int, u: float, v: float) -> Vec3
 def texture_opacity(textures: Textures, texture: int, u: float, v: float) -> float:
     """Opacity of a texture at (u, v), 0..1."""
     first, second, third, fourth, fx, fy = _texels(textures, texture, u, v)
-    # As floats: the difference of unsigned numbers is never below 0.
+    # As floats, because differences of unsigned numbers cannot be negative.
     upper = np.float64(first >> 24), np.float64(second >> 24)
     lower = np.float64(third >> 24), np.float64(fourth >> 24)
     return _mix(*upper, *lower, fx, fy) / 255.0
@@ -82,13 +83,13 @@ def texture_opacity(textures: Textures, texture: int, u: float, v: float) -> flo
 def _texels(
     textures: Textures, texture: int, u: float, v: float
 ) -> tuple[np.uint32, np.uint32, np.uint32, np.uint32, float, float]:
-    """The four texels around a point, upper left, upper right, lower left, lower right, and where it lies between."""
-    # NumPy's floor is an instruction, Python's a call.
+    """The four texels around a point, upper left, upper right, lower left, lower right, and its place in between."""
+    # NumPy's floor is one instruction, Python's is a call.
     width, height, start = textures.widths[texture], textures.heights[texture], textures.starts[texture]
     x, y = (u - np.floor(u)) * width - 0.5, (np.ceil(v) - v) * height - 0.5
     left, top = np.floor(x), np.floor(y)
     fx, fy = x - left, y - top
-    # Half a texel beyond either edge at most: no division.
+    # At most half a texel beyond an edge, so no division is needed.
     column, row = int(left), int(top)
     right, below = column + 1, row + 1
     if column < 0:

@@ -1,4 +1,4 @@
-"""Rays against triangles: Embree's trees, and the points with an alpha mask that rays pass through."""
+"""Ray queries: Embree's trees, and alpha masks through which rays pass."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from .vec3 import Vec3
 from .vectors import Float32
 
 MISS = -1
-FAR = np.float32(1e37)  # Embree's own word for nowhere
+FAR = np.float32(1e37)  # Embree's value for infinite distance
 
 
 class Hits(NamedTuple):
-    """What each of a batch of N rays met first: the triangle's number or `MISS`, barycentric coordinates, distance.
+    """The first hits of N rays: triangle number or `MISS`, barycentric coordinates, distance.
 
-    Coordinates and distance of a miss mean nothing.
+    Coordinates and distance are undefined for a miss.
     """
 
     triangle: NDArray[np.int32]
@@ -34,28 +34,28 @@ class Hits(NamedTuple):
 
     @classmethod
     def none(cls, distance: Float32) -> Hits:
-        """Nothing met within `distance` (N,) yet."""
+        """No hit yet, within `distance` (N,)."""
         return cls(np.full(len(distance), MISS, np.int32), np.empty_like(distance), np.empty_like(distance), distance)
 
 
 class Left(NamedTuple):
-    """Of a batch of N rays the triangle that each has left, or `MISS`, and how far behind it the ray goes on."""
+    """For N rays, the triangle that each has left, or `MISS`, and how far behind it the ray continues."""
 
     triangle: NDArray[np.int32]
     way: Float32
 
 
 class Tree:
-    """Embree's tree over some neighbouring triangles of a scene.
+    """Embree's tree of neighbouring triangles of a scene.
 
     Parameters
     ----------
     corners : (T, 3, 3) float32
-        First corner and two edges of each.
+        The first corner and two edges of each triangle.
     first : int
-        Number of the first of them in the scene.
+        The number of the first triangle in the scene.
     masked : bool
-        Rays may pass through their surfaces.
+        Whether rays may pass through parts of the surfaces.
     """
 
     def __init__(self, corners: Float32, first: int, *, masked: bool) -> None:
@@ -65,41 +65,44 @@ class Tree:
         vertices[:, 1:] += corners[:, :1]
         self.box = bounds(vertices)
         TriangleMesh(self._embree, vertices)
-        # Embree builds its tree at the first query: not in several threads at once.
+        # Embree builds its tree at the first query, which must not happen in several threads at once.
         self.blocked(np.zeros((1, 3), np.float32), np.ones((1, 3), np.float32), np.ones(1, np.float32))
 
     def nearest(self, origin: Float32, direction: Float32, distance: Float32) -> Hits:
-        """The first hits of rays (N, 3) within `distance` (N,), which becomes that of the hits."""
+        """The first hits of rays (N, 3) within `distance` (N,), which is overwritten with the distance of the hits."""
         found = self._embree.run(origin, direction, dists=distance, output=1)
         return Hits(found["primID"], found["u"], found["v"], distance)
 
     def blocked(self, origin: Float32, direction: Float32, distance: Float32) -> NDArray[np.bool_]:
-        """Whether any triangle lies within `distance` (N,), which is spoilt, along each ray (N, 3)."""
+        """Whether any triangle is within `distance` (N,) along each ray (N, 3); `distance` is overwritten."""
         blocked: NDArray[np.bool_] = self._embree.run(origin, direction, dists=distance, query="OCCLUDED") == 0
         return blocked
 
     def near(self, origin: Float32, direction: Float32, distance: Float32) -> NDArray[np.int32]:
-        """Which of the rays (N, 3) pass the tree's bounding box within `distance` (N,): few need to ask more of it."""
+        """Indices of the rays (N, 3) that pass the tree's bounding box within `distance` (N,).
+
+        Only these need a query.
+        """
         return np.flatnonzero(passing([self.box], origin, direction, distance)).astype(np.int32)
 
 
 class Trees:
-    """Every triangle of a scene at one time, to be asked what rays meet.
+    """All triangles of a scene at one time, for queries.
 
     Parameters
     ----------
     trees : sequence of Tree
-        Together they hold all of `triangles`.
+        The trees, which together contain all of `triangles`.
     triangles : Triangles
     materials : Materials
-        They tell where a masked surface is solid.
+        For finding where a masked surface is solid.
     """
 
     def __init__(self, trees: Sequence[Tree], triangles: Triangles, materials: Materials) -> None:
         self.trees, self.triangles, self.materials = tuple(trees), triangles, materials
 
     def clearance(self, point: Vec3) -> float:
-        """How far around `point` there is nothing; 0 where that is less than all is wide."""
+        """The radius around `point` without any triangle; 0 if it is smaller than the scene."""
         box = bounds(np.array([tree.box for tree in self.trees]))
         gap = np.linalg.norm(np.clip(point, *box) - point)
         return max(float(gap - np.linalg.norm(box[1] - box[0])), 0.0)
@@ -115,13 +118,16 @@ class Trees:
         return hits
 
     def occluded(self, origin: Float32, direction: Float32, distance: Float32) -> NDArray[np.bool_]:
-        """Whether a solid point lies within `distance` (N,), which is spoilt, on each ray from `origin` (N, 3)."""
+        """Whether a solid point is within `distance` (N,) on each ray from `origin` (N, 3).
+
+        `distance` is overwritten.
+        """
         result = np.zeros(len(origin), np.bool_)
         for number, tree in enumerate(self.trees):
             if number == 0 and not tree.masked:
                 result = tree.blocked(origin, direction, distance)
                 continue
-            distance[result] = -1.0  # asks no more
+            distance[result] = -1.0  # no further queries for this ray
             ray = tree.near(origin, direction, distance)
             rays, ahead, reach = origin[ray], direction[ray], distance[ray]
             if tree.masked:
@@ -133,9 +139,9 @@ class Trees:
         return result
 
     def _search(self, tree: Tree, ray: NDArray[np.int32], origin: Float32, direction: Float32, hits: Hits) -> None:
-        """Put the tree's solid points into `hits` where they are nearer; a ray goes on from every other point.
+        """Write the tree's solid points to `hits` if they are nearer; at other points the ray continues.
 
-        `ray` (K,) are the numbers of the rays in `hits`.
+        `ray` (K,) are the indices of the rays in `hits`.
         """
         travelled = np.zeros(len(ray), np.float32)
         latest = Left(np.full(len(ray), MISS, np.int32), np.empty(len(ray), np.float32))
@@ -166,9 +172,9 @@ def _settle(
     passed: NDArray[np.int32],
     latest: Left,
 ) -> int:
-    """Put solid points into `hits`; the rays that have met a point that is none are put into `passed`, and counted.
+    """Write solid points to `hits`, and rays that hit a point that is not solid to `passed`; count the latter.
 
-    `latest` is what each ray left last, and becomes what it leaves now.
+    `latest` is the triangle that each ray left last, and is updated.
     """
     count = 0
     for index in range(len(ray)):
@@ -183,7 +189,7 @@ def _settle(
             hits.b[target], hits.c[target] = b, c
             hits.distance[target] = travelled[index] + found.distance[index]
         else:
-            # A ray that runs along a triangle may meet it again, wherever rounding has put it.
+            # Because of rounding, a ray that runs along a triangle may hit it again.
             again = triangle == latest.triangle[index]
             latest.way[index] = 2.0 * latest.way[index] if again else lift(triangles.corners, triangle)
             latest.triangle[index] = triangle

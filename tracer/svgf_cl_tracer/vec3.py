@@ -1,4 +1,4 @@
-"""Arithmetic on vectors and colours inside compiled loops: plain triples of floats, which stay in registers."""
+"""Vectors and colours inside compiled loops: plain tuples of three floats, which stay in registers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Vec3 = tuple[float, float, float]
 @compiled
 def row(rows: NDArray[Any], index: int) -> Vec3:
     """Row `index` of an array (N, 3), in double precision."""
-    # Not float(), which Numba takes to leave a float32 as it is.
+    # Not float(), because Numba would keep a float32.
     return np.float64(rows[index, 0]), np.float64(rows[index, 1]), np.float64(rows[index, 2])
 
 
@@ -60,7 +60,7 @@ def scale(a: Vec3, factor: float) -> Vec3:
 
 @compiled
 def normalise(a: Vec3) -> Vec3:
-    """The vector at length 1; one of length 0 stays as it is."""
+    """The vector with length 1; a vector of length 0 is unchanged."""
     length = math.sqrt(dot(a, a))
     return scale(a, 1.0 / length) if length > 0.0 else a
 
@@ -86,7 +86,7 @@ def tangents(normal: Vec3) -> tuple[Vec3, Vec3]:
 
 @compiled
 def to_world(local: Vec3, normal: Vec3) -> Vec3:
-    """A vector given in the frame of `normal`, whose third axis that is, in the world."""
+    """A vector in the frame whose third axis is `normal`, converted to the world."""
     tangent, bitangent = tangents(normal)
     return add(add(scale(tangent, local[0]), scale(bitangent, local[1])), scale(normal, local[2]))
 

@@ -1,4 +1,4 @@
-"""Types of the arrays that vectors and colours are stored in."""
+"""Types of arrays of vectors and colours."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from . import blur, contrast, cornell, fence, fireflies, glossy, mirror, sliding
 
 @dataclass(frozen=True)
 class Builtin:
-    """A scene made to be hard for a denoiser.
+    """A scene that is hard for a denoiser.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def builtin_scene(name: str = "cornell") -> Scene:
     Raises
     ------
     SceneError
-        There is no such scene.
+        If there is no such scene.
     """
     if name not in BUILTIN:
         raise SceneError(f"no built-in scene {name!r}; there is: {', '.join(BUILTIN)}")

@@ -1,4 +1,4 @@
-"""A chess board seen through a wide lens: within one pixel lie points near and far, of now and of a moment ago."""
+"""A chess board seen through a wide lens: one pixel shows near and far points, at several moments."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def make() -> Scene:
 
 
 def _pieces() -> Iterator[tuple[str, Vector]]:
-    """Each piece of the position, and where it stands; a square is 1 wide."""
+    """Each piece of the position and its place; a square is 1 wide."""
     for row, rank in enumerate(POSITION.split("/")):
         column = 0
         for symbol in rank:
@@ -53,7 +53,7 @@ def _pieces() -> Iterator[tuple[str, Vector]]:
 
 
 def _turned(neck: float, *head: tuple[float, float]) -> Outline:
-    """The outline of a piece: its foot, its stem up to the neck, a collar, and the head above."""
+    """The outline of a piece: the foot, the stem up to the neck, a collar, and the head."""
     foot = [(0.0, 0.0), (0.36, 0.0), (0.36, 0.10), (0.28, 0.16)]
     stem = curve([(0.30, 0.20), (0.14, 0.2 + 0.4 * neck), (0.11, neck)])
     return [*foot, *stem, (0.2, neck + 0.04), *curve([(0.11, neck + 0.08), *head])]

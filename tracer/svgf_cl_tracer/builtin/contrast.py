@@ -1,4 +1,4 @@
-"""A dark arcade beside a court in the sun: radiance of three orders of magnitude in one picture."""
+"""A dark arcade beside a court in the sun: radiance spans three orders of magnitude in one picture."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from .patterns import bricks, plaster, tiles
 from .shapes import band, curve, lathe, quad
 from .surfaces import glazed, painted
 
-BAYS, BAY = 5, 2.0  # how many, and how long each
-PASSAGE = 5.0  # how far the walk goes on without arches
-SPRING, TOP = 2.0, 3.4  # heights where the arches begin and where the wall ends
-HALF = 1.6  # half the width of the walk
+BAYS, BAY = 5, 2.0  # the number of bays, and the length of each
+PASSAGE = 5.0  # length of the walk beyond the arches
+SPRING, TOP = 2.0, 3.4  # heights of the springing of the arches and of the top of the wall
+HALF = 1.6  # half of the walk's width
 
 COLUMN = [(0.0, 0.0), (0.24, 0.0), (0.24, 0.12), (0.16, 0.2), (0.14, 1.75), (0.2, 1.85), (0.26, 2.0), (0.0, 2.0)]
 URN = [(0.0, 0.0), (0.16, 0.0), (0.08, 0.1), (0.3, 0.45), (0.28, 0.7), (0.14, 0.82), (0.2, 0.9), (0.0, 0.8)]

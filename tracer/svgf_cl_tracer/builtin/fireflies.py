@@ -1,4 +1,4 @@
-"""Two tiny lamps in bowls: all light comes from a few very bright spots, which a path meets seldom."""
+"""Two tiny lamps in bowls: all light comes from a few very bright spots, which paths rarely hit."""
 
 from __future__ import annotations
 

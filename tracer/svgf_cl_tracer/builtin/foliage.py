@@ -1,4 +1,4 @@
-"""Leaves cut out of cards: a texture with opacity, and crowds of cards that show it."""
+"""Leaves cut out of cards: a texture with opacity, and objects that consist of many such cards."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from ..textures import Image
 from .patterns import image
 from .shapes import SQUARE
 
-SIDE = 0.26  # of a card
+SIDE = 0.26  # side of a card
 
 
 def foliage(count: int, centre: Vector, half_axes: Vector, *, seed: int) -> Instance:
-    """So many twigs in an ellipsoid, turned at random, most of them near its surface."""
+    """`count` twigs in an ellipsoid, turned at random, most of them near its surface."""
     random = np.random.default_rng(seed)
     direction = random.standard_normal((count, 3))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
@@ -28,7 +28,7 @@ def foliage(count: int, centre: Vector, half_axes: Vector, *, seed: int) -> Inst
 
 
 def twigs() -> Image:
-    """Seven leaves around a point (h, w, 4); the fourth channel is 0 where one sees through."""
+    """Seven leaves around a point (h, w, 4); the fourth channel is 0 outside the leaves."""
     size = 128
     y, x = np.mgrid[-1.0 : 1.0 : size * 1j, -1.0 : 1.0 : size * 1j]
     picture = np.zeros((size, size, 4))

@@ -1,4 +1,4 @@
-"""A studio with a polished floor: reflections move unlike the surface that shows them."""
+"""A studio with a polished floor: reflections move differently from the surface that shows them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A hall of mirrors: what is seen in them has edges, depth and motion of which the surface tells nothing."""
+"""A hall of mirrors: the edges, depth and motion in a reflection are not those of the mirror."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ def image(colour: ArrayLike) -> Image:
 
 
 def mixed(weight: Float64, first: ArrayLike, second: ArrayLike) -> Float64:
-    """Colours (h, w, 3) between `first` (where the weight (h, w) is 0) and `second` (where it is 1)."""
+    """Colours (h, w, 3) between `first` (at weight 0) and `second` (at weight 1); the weight is (h, w)."""
     share = weight[..., None]
     colour: Float64 = (1.0 - share) * np.asarray(first, float) + share * np.asarray(second, float)
     return colour
@@ -24,7 +24,8 @@ def mixed(weight: Float64, first: ArrayLike, second: ArrayLike) -> Float64:
 def clouds(shape: tuple[int, int], seed: int, *, stretch: float = 1.0, slope: float = 1.6) -> Float64:
     """Fractal noise (h, w) in 0..1 that repeats without a seam.
 
-    White noise whose spectrum falls with the frequency to the power of `slope`; drawn out sideways by `stretch`.
+    It is white noise whose spectrum falls with the frequency to the power of `slope`. It is stretched horizontally by
+    the factor `stretch`.
     """
     down, across = np.fft.fftfreq(shape[0], 1 / shape[0]), np.fft.rfftfreq(shape[1], 1 / shape[1])
     frequency = np.hypot(down[:, None], stretch * across)
@@ -36,7 +37,7 @@ def clouds(shape: tuple[int, int], seed: int, *, stretch: float = 1.0, slope: fl
 
 
 def tiles(columns: int, rows: int, dark: ArrayLike, light: ArrayLike, joint: ArrayLike) -> Image:
-    """A floor of tiles in two tones, each a little different, with pale joints."""
+    """A floor of tiles in two tones, each tile slightly different, with pale joints."""
     size, width = 32, 1
     random = np.random.default_rng(7)
     y, x = np.mgrid[: rows * size, : columns * size]
@@ -49,7 +50,7 @@ def tiles(columns: int, rows: int, dark: ArrayLike, light: ArrayLike, joint: Arr
 
 
 def bricks(columns: int, rows: int, dark: ArrayLike, light: ArrayLike, mortar: ArrayLike) -> Image:
-    """A running bond of bricks, each of its own tone; an even number of rows repeats."""
+    """A running bond of bricks, each with its own tone; it repeats if the number of rows is even."""
     wide, high = 48, 16
     random = np.random.default_rng(3)
     y, x = np.mgrid[: rows * high, : columns * wide]
@@ -62,7 +63,7 @@ def bricks(columns: int, rows: int, dark: ArrayLike, light: ArrayLike, mortar: A
 
 
 def planks(count: int, dark: ArrayLike, light: ArrayLike) -> Image:
-    """So many wooden boards, one above the other, the grain from left to right."""
+    """`count` wooden boards above each other; the grain runs from left to right."""
     shape, high = (48 * count, 1024), 48
     y, x = np.mgrid[: shape[0], : shape[1]]
     random = np.random.default_rng(11)
@@ -79,5 +80,5 @@ def marble(size: int, seed: int, ground: ArrayLike, vein: ArrayLike) -> Image:
 
 
 def plaster(size: int, seed: int, dark: ArrayLike, light: ArrayLike) -> Image:
-    """A wall's uneven paint."""
+    """Uneven paint on a wall."""
     return image(mixed(clouds((size, size), seed, slope=1.1), dark, light))

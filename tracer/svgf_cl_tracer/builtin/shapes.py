@@ -1,4 +1,4 @@
-"""The shapes that the built-in scenes are put together from; +y is up."""
+"""The shapes of which the built-in scenes consist; +y is up."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ Outline = list[tuple[float, float]]
 # Triangle, corner, (right, up).
 SQUARE = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]], float)
 
-# Around a solid of revolution: its outline shows no corners in a picture 720 pixels high.
+# Segments around a solid of revolution: enough for a smooth outline in a picture 720 pixels high.
 SECTIONS = 64
 
-# Edges sharper than this stay edges where a surface is smooth.
+# Edges with a larger angle stay sharp on a smooth surface.
 EDGE = np.radians(30.0)
 
 
@@ -40,9 +40,9 @@ def quad(
     repeat: tuple[float, float] = (1.0, 1.0),
     motion: Motion | None = None,
 ) -> Instance:
-    """A rectangle whose front is the side towards right x up.
+    """A rectangle whose front faces right x up (the cross product).
 
-    Its texture's lower left texel lies at `corner`; the texture fits `repeat` times to the right and up.
+    The lower left texel of its texture is at `corner`; the texture repeats `repeat` times to the right and up.
     """
     a, b, c = np.array(corner, float), np.array(right, float), np.array(up, float)
     corners = a + SQUARE[..., :1] * b + SQUARE[..., 1:] * c
@@ -50,7 +50,10 @@ def quad(
 
 
 def panel(centre: Vector, target: Vector, size: tuple[float, float], material: Material) -> Instance:
-    """A rectangle of (width, height) `size` around `centre` whose front looks at `target`, neither above the other."""
+    """A rectangle of (width, height) `size` around `centre` whose front faces `target`.
+
+    `target` must not be straight above or below `centre`.
+    """
     right, up, _ = Camera(target, centre).basis()
     right, up = right * size[0], up * size[1]
     return quad(np.array(centre) - (right + up) / 2.0, right, up, material)
@@ -65,7 +68,7 @@ def place(
     smooth: bool = False,
     motion: Motion | None = None,
 ) -> Instance:
-    """A mesh turned about the vertical and moved to `position`."""
+    """A mesh that is turned about the vertical and moved to `position`."""
     mesh = mesh.copy()
     mesh.apply_transform(rotation_matrix(np.radians(degrees), UP))
     mesh.apply_transform(translation_matrix(position))
@@ -73,7 +76,7 @@ def place(
 
 
 def upright(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
-    """A mesh made by trimesh, whose axis is z, stood up."""
+    """A mesh made by trimesh, whose axis is z, turned so that its axis is y."""
     stood: trimesh.Trimesh = mesh.apply_transform(rotation_matrix(-np.pi / 2.0, (1, 0, 0)))
     return stood
 
@@ -84,18 +87,18 @@ def ball(radius: float, centre: Vector, material: Material) -> Instance:
 
 
 def ring(radius: float, thickness: float, centre: Vector, material: Material) -> Instance:
-    """A torus that lies flat: radius of its middle line, and of its tube."""
+    """A torus that lies flat; `radius` is that of its middle line, `thickness` that of its tube."""
     return place(upright(trimesh.creation.torus(radius, thickness)), material, centre, smooth=True)
 
 
 def lathe(outline: Outline, material: Material, foot: Vector, *, motion: Motion | None = None) -> Instance:
-    """A solid of revolution that stands at `foot`."""
+    """A solid of revolution whose foot is at `foot`."""
     mesh = upright(trimesh.creation.revolve(np.array(outline), sections=SECTIONS))
     return place(trimesh.graph.smooth_shade(mesh, angle=EDGE), material, foot, smooth=True, motion=motion)
 
 
 def curve(points: Outline, steps: int = 6) -> Outline:
-    """A rounded outline through `points`, with so many pieces from one to the next."""
+    """A rounded outline through `points`, with `steps` pieces between neighbours."""
     at = np.arange(len(points))
     fine = PchipInterpolator(at, points)(np.linspace(0.0, at[-1], at[-1] * steps + 1))
     return [(float(radius), float(height)) for radius, height in fine]
@@ -114,18 +117,21 @@ def rod(start: Vector, end: Vector, radius: float) -> trimesh.Trimesh:
 
 
 def merged(meshes: Iterable[trimesh.Trimesh], material: Material, *, motion: Motion | None = None) -> Instance:
-    """Several meshes as one object with flat faces."""
+    """Several meshes as one object with flat shading."""
     return Instance(np.concatenate([mesh.triangles for mesh in meshes]), material, motion=motion)
 
 
 def band(first: Float64, second: Float64) -> Float64:
-    """Triangles (T, 3, 3) between two lines of as many points (n, 3) each."""
+    """Triangles (T, 3, 3) between two lines with the same number of points (n, 3) each."""
     a, b, c, d = first[:-1], first[1:], second[1:], second[:-1]
     return np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
 
 
 def orbit(centre: Vector, radius: float, height: float, degrees: Iterable[float], fov_y: float) -> list[Camera]:
-    """Cameras around the vertical through `centre` that look at it; at 0 degrees from the side of +z."""
+    """Cameras on a circle around the vertical through `centre` that look at it.
+
+    At 0 degrees they are on the side of +z.
+    """
     angles = np.radians(list(degrees))
     eyes = np.array(centre) + np.stack([radius * np.sin(angles), 0 * angles + height, radius * np.cos(angles)], axis=1)
     return [Camera(vector(eye), centre, fov_y=fov_y) for eye in eyes]

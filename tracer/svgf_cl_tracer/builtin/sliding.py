@@ -1,4 +1,4 @@
-"""A painted wall slides past: its features stay with it, while the shadows on it stay behind."""
+"""A painted wall slides past: its pattern moves with it, but the shadows on it do not."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .shapes import box, lathe, merged, panel, quad
 from .surfaces import lamp, painted
 
 SPEED = 1.8  # units per second, to the left
-LENGTH = 12.0  # after which the painting repeats
+LENGTH = 12.0  # length after which the painting repeats
 
 COLUMN = [(0.0, 0.0), (0.24, 0.0), (0.24, 0.1), (0.15, 0.18), (0.135, 2.6), (0.22, 2.75), (0.24, 2.9), (0.0, 2.9)]
 
@@ -54,7 +54,7 @@ def _sea() -> Float64:
 
 
 def _blue_tiles() -> Float64:
-    """48 tiles around, 4 high, each the same flower, mirrored at its edges."""
+    """48 tiles around, 4 high; each has the same flower, mirrored at its edges."""
     y, x = np.mgrid[:160, :1920] / 40.0
     u, v = abs(x % 1.0 - 0.5), abs(y % 1.0 - 0.5)
     radius, angle = np.hypot(u, v), np.arctan2(v, u)

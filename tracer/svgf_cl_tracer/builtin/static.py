@@ -1,4 +1,4 @@
-"""A still life: nothing moves, so whatever flickers is the filter's doing."""
+"""A still life: nothing moves, so all flicker comes from the filter."""
 
 from __future__ import annotations
 

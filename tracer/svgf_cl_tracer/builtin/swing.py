@@ -1,4 +1,4 @@
-"""A pendulum swings across the room: it uncovers what was never seen, and its shadow moves over what stands still."""
+"""A pendulum swings across the room: it uncovers new surfaces, and its shadow moves over still ones."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .surfaces import lamp, metal, painted
 PIVOT = (0.0, 3.6, 0.0)
 PERIOD = 2.0  # seconds
 SWING = 26.0  # degrees to either side
-PHASE = 0.8  # radians: the middle of the sequence shows it on its way
+PHASE = 0.8  # radians; in the middle of the sequence the pendulum is moving
 
 BOB = [(0.0, 0.0), (0.02, 0.06), (0.3, 0.32), (0.3, 0.40), (0.1, 0.56), (0.0, 0.58)]
 

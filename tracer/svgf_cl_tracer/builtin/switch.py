@@ -1,4 +1,4 @@
-"""A lamp is switched off and on again: a filter that trusts the past for too long lags behind."""
+"""A lamp is switched off and on again: a filter that trusts its history for too long lags behind."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .patterns import image, planks
 from .shapes import ball, box, curve, lathe, merged, quad, rod
 from .surfaces import glazed, lamp, painted
 
-# Seconds.
+# Seconds at which the lamp is switched.
 OFF, ON = 0.5, 1.0
 
 LANTERN = (0.75, 1.65, -0.75)
@@ -22,7 +22,7 @@ VASE = [(0.0, 0.0), (0.06, 0.0), (0.12, 0.11), (0.04, 0.27), (0.06, 0.32), (0.0,
 
 
 def make() -> Scene:
-    """A paper lantern beside a bed at dusk; the little light of the window stays."""
+    """A paper lantern beside a bed at dusk; the weak light from the window does not change."""
     paper = Material(emission=(22.0, 15.5, 8.6), brightness=Track((0.0, OFF, ON), ((1,), (0,), (1,)), step=True))
     stripes = image(np.array([(186, 176, 150), (128, 142, 132)]).repeat(16, axis=0)[None])
     white, wood = Material((0.75, 0.74, 0.70)), glazed((0.30, 0.16, 0.09), 0.5)

@@ -1,1 +1,1 @@
-"""The tracer's own commands of ``svgf-cl``: one file a command. Importing them takes nothing that the tracer needs."""
+"""The tracer's own commands of ``svgf-cl``, one file each. Importing them imports none of the tracer's dependencies."""

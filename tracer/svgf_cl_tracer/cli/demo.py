@@ -1,4 +1,4 @@
-"""``svgf-cl demo``: the whole way from a scene to denoised pictures, with proof."""
+"""``svgf-cl demo``: everything from a scene to denoised pictures, with measured results."""
 
 from __future__ import annotations
 
@@ -59,13 +59,13 @@ def demo(
 
 
 def viewing(folder: Path) -> list[str]:
-    """The command that plays what was rendered to a folder."""
+    """The command that plays the frames in a folder."""
     reference = str(folder / "reference")
     return ["svgf-cl", "view", str(folder / "noisy"), "--reference", reference, "--set", "taa=on"]
 
 
 def show_gain(noisy: Mapping[int, Metrics], svgf: Mapping[int, Metrics], antialiased: Mapping[int, Metrics]) -> None:
-    """Print how far the pictures of each stage are from the reference, one row a frame."""
+    """Print the measures of each stage's pictures against the reference, one row for each frame."""
     rows = []
     for number, before in noisy.items():
         stages = (before, svgf[number], antialiased[number])
@@ -86,7 +86,7 @@ def show_gain(noisy: Mapping[int, Metrics], svgf: Mapping[int, Metrics], antiali
 
 
 def show_files(folder: Path, names: Iterable[str]) -> None:
-    """Print where the results are, the ones to look at first."""
+    """Print where the results are; the files to look at first come first."""
     print("files:")
     for name in names:
         print(f"  {folder / name}")

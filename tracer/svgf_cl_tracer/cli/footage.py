@@ -1,4 +1,4 @@
-"""Scenes for ``svgf-cl compare``: noisy frames at 1 sample per pixel, and their path-traced truth."""
+"""Scenes for ``svgf-cl compare``: noisy frames at 1 sample per pixel, and path-traced references."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from svgf_cl_tracer.cli.scenes import open_scene, require_tracer
 if TYPE_CHECKING:
     from svgf_cl_tracer import Shot
 
-FRAMES = 24  # of a scene that does not say how many show it
-SETTLED = 8  # frames: histories are nearly as long then as they get
+FRAMES = 24  # for a scene that does not define its length
+SETTLED = 8  # frames after which histories have nearly their full length
 
 
 @dataclass(frozen=True)
 class Traced:
     """A shot of a scene along its own camera path; all light is one signal.
 
-    Each truth is rendered as two independent halves: what they differ by is its own noise. They are kept in the user's
-    cache folder as they grow.
+    Each reference is rendered as two independent halves, whose difference is its own noise. The halves are stored in
+    the user's cache folder while they are rendered.
 
     Parameters
     ----------
     scene : str
-        A built-in scene's name, a folder with a scene.json, or a scene's file.
+        The name of a built-in scene, a folder with a scene.json, or a scene's file.
     choice : Choice
     """
 
@@ -41,28 +41,28 @@ class Traced:
 
     @property
     def name(self) -> str:
-        """The scene's, without folders."""
+        """The name of the scene, without folders."""
         return Path(self.scene).name if Path(self.scene).exists() else self.scene
 
     @property
     def note(self) -> str:
-        """How it was rendered."""
+        """How it was rendered, as text."""
         rays = "rays move within the pixel" if self.jitter else "rays go through pixel centres"
         return f"1 sample per pixel, {rays}; truth of {self.choice.spp} samples per pixel"
 
     @property
     def shape(self) -> Shape:
-        """As chosen."""
+        """As in `choice`."""
         return self.choice.shape
 
     @property
     def jitter(self) -> bool:
-        """As chosen."""
+        """As in `choice`."""
         return self.choice.jitter
 
     @cached_property
     def numbers(self) -> Sequence[int]:
-        """From 0."""
+        """The numbers of the frames, from 0."""
         from svgf_cl_tracer import BUILTIN
 
         usual = BUILTIN[self.scene].frames if self.scene in BUILTIN else FRAMES
@@ -70,36 +70,36 @@ class Traced:
 
     @property
     def judged(self) -> Sequence[int]:
-        """The last ones."""
+        """The numbers of the last frames, which are measured."""
         count = self.choice.judged or max(2, len(self.numbers) - SETTLED)
         return self.numbers[-count:]
 
     @property
     def steps(self) -> int:
-        """Two halves of whole chunks a frame."""
+        """The number of chunks to render: two halves of whole chunks for each frame."""
         from svgf_cl_tracer.references import chunks
 
         return len(self.judged) * 2 * chunks(self.choice.spp // 2)
 
     @property
     def identity(self) -> str:
-        """The shot's, and how much of its truth there is."""
+        """The identity of the shot, with the number of samples of its references."""
         return f"{self.shot.identity} {list(self.judged)} {self.choice.spp} {self.jitter}"
 
     def frames(self) -> Iterator[Frame]:
-        """Render frame by frame."""
+        """Render the frames one by one."""
         from svgf_cl_tracer import render_sequence
 
         for frame in render_sequence(self.shot, jitter=self.jitter):
             yield replace(frame, direct=None, indirect=None)
 
     def truths(self, advance: Callable[[], None]) -> Mapping[int, Pair]:
-        """Render both halves of each judged frame, as far as an earlier run has not."""
+        """Render both halves of each measured frame, unless an earlier run has stored them."""
         return {number: (self._half(number, 0, advance), self._half(number, 1, advance)) for number in self.judged}
 
     @cached_property
     def shot(self) -> Shot:
-        """What is rendered."""
+        """The shot that is rendered."""
         import svgf_cl_tracer
 
         return svgf_cl_tracer.Shot(open_scene(self.scene, None), self.shape, len(self.numbers))
@@ -112,14 +112,14 @@ class Traced:
 
 
 def open_footage(scene: str, choice: Choice) -> Traced:
-    """The footage of a scene.
+    """Open a scene for `svgf-cl compare`.
 
     Raises
     ------
     SvgfError
-        Where there is no such scene, or it cannot be used.
+        If there is no such scene, or it cannot be used.
     """
-    require_tracer(sys.stderr)  # the standard output may be figures for a program
+    require_tracer(sys.stderr)  # the standard output may be read by a program
     footage = Traced(scene, choice)
     footage.identity  # noqa: B018  # opens the scene: what is wrong with it is said before anything is rendered
     return footage

@@ -1,4 +1,4 @@
-"""``svgf-cl scenes``: the built-in scenes in words and thumbnails, and a contact sheet of them and of others."""
+"""``svgf-cl scenes``: lists the built-in scenes with thumbnails, and draws contact sheets of scenes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from svgf_cl.io.atomic import output_file
 from svgf_cl.io.display import Bytes, automatic_exposure, to_bytes, write_image
 from svgf_cl_tracer.cli.scenes import open_scene, read_sky, require_tracer
 
-# In a terminal, (height, width); two pixels to a character.
+# Size of a thumbnail in a terminal, (height, width); a character shows two pixels.
 THUMBNAIL = (18, 32)
 
 FORMATS = (".png", ".webp")
@@ -80,7 +80,7 @@ def scenes(
 
 @dataclass(frozen=True)
 class Entry:
-    """A scene to show: a built-in one by its name, or a file or folder."""
+    """A scene to show: a built-in scene, or a file or folder."""
 
     name: str
     hard: str = ""
@@ -88,7 +88,7 @@ class Entry:
 
     @property
     def caption(self) -> str:
-        """What stands above its picture."""
+        """The text above its picture."""
         return f"{self.name}: {self.hard}" if self.hard else self.name
 
 
@@ -100,7 +100,7 @@ def built_in() -> list[Entry]:
 
 
 def middle_frame(entry: Entry, shape: Shape, *, spp: int, sky: Sky | None, exposure: float) -> Bytes:
-    """Render the frame in the middle of a scene's sequence, as shown."""
+    """Render the frame in the middle of a scene's sequence, as a picture for display."""
     from svgf_cl_tracer import Shot, render_frame
 
     scene = open_scene(entry.name, sky if Path(entry.name).is_file() else None)
@@ -109,7 +109,7 @@ def middle_frame(entry: Entry, shape: Shape, *, spp: int, sky: Sky | None, expos
 
 
 def list_scenes(entries: Sequence[Entry], draw: Callable[[Entry, Shape], Bytes]) -> None:
-    """Print a table of scenes, with thumbnails where there is colour to draw them in."""
+    """Print a table of scenes, with thumbnails if the terminal has colours."""
     console = screen()
     coloured = console.color_system is not None
     table = Table("scene", "frames", "what is hard", *(["middle frame"] if coloured else []), show_lines=coloured)
@@ -120,7 +120,7 @@ def list_scenes(entries: Sequence[Entry], draw: Callable[[Entry, Shape], Bytes])
 
 
 def half_blocks(shown: Bytes) -> Text:
-    """Draw a picture (H, W, 3) of even height in coloured characters, each two pixels high."""
+    """Draw a picture (H, W, 3) of even height in coloured characters, each of which shows two pixels."""
     text = Text()
     for upper, lower in zip(shown[::2].tolist(), shown[1::2].tolist(), strict=True):
         for over, under in zip(upper, lower, strict=True):

@@ -1,4 +1,4 @@
-"""``svgf-cl render``: a scene file in, noisy EXR frames with their G-buffers out."""
+"""``svgf-cl render``: renders noisy EXR frames with their G-buffers from a scene."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def render(
 
 
 def write_references(folder: Path, references: References, goal: Goal, run: Map) -> None:
-    """Render and write the reference of each frame, and print how good they are."""
+    """Render and write the reference of each frame, and print their errors."""
     frames = references.shot.frames
     reached = []
     with share_bar("references", frames) as report:

@@ -1,4 +1,4 @@
-"""The tracer is optional: finding it, and opening a scene with it."""
+"""Opens scenes with the tracer, and checks that this optional part is installed."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
 
 def require_tracer(remarks: TextIO | None = None) -> None:
-    """Raise `SvgfError`, with the command that installs it, where the tracer or something it needs is missing.
+    """Raise `SvgfError`, with the command that installs it, if the tracer or one of its dependencies is missing.
 
-    That it has to be compiled is said on `remarks`, by default the standard output.
+    If the tracer has to be compiled first, a line on `remarks` (by default the standard output) says so.
     """
-    # trimesh swallows KeyboardInterrupt while it is being imported: until then Ctrl-C ends the process by itself.
+    # trimesh swallows KeyboardInterrupt while it is imported; until then Ctrl-C ends the process directly.
     interrupt = signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:
         import svgf_cl_tracer.api  # noqa: F401
@@ -32,12 +32,12 @@ def require_tracer(remarks: TextIO | None = None) -> None:
 
 
 def read_sky(text: str) -> tuple[float, float, float] | Environment:
-    """Read what ``--sky`` says: three radiances, or the image in a file.
+    """Read the value of ``--sky``: three radiances, or the path of an image.
 
     Raises
     ------
     SvgfError
-        Where it is neither, or the image cannot be used.
+        If it is neither, or the image cannot be used.
     """
     import svgf_cl_tracer
 
@@ -60,12 +60,12 @@ def parse_rgb(text: str) -> tuple[float, float, float]:
 def open_scene(
     name: str, sky: tuple[float, float, float] | Environment | None, *, alternative_lights: bool = False
 ) -> Scene:
-    """Open the scene in file or folder `name`, or make the built-in one of that name.
+    """Open the scene in the file or folder `name`, or make the built-in scene of that name.
 
     Raises
     ------
     SvgfError
-        Where there is neither, where the file cannot be used, or where a built-in scene is given other lights.
+        If there is neither, if the file cannot be used, or if other lights are requested for a built-in scene.
     """
     import svgf_cl_tracer
 

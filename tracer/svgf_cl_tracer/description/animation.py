@@ -1,4 +1,4 @@
-"""The animation of a description: how nodes of the model, and the nodes below them, move through the world."""
+"""The animations of a description: motion of nodes of the model and of the nodes below them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What pydantic finds wrong with a file, in one line of our words: field, what was expected, what was found."""
+"""Converts pydantic's errors to one line: the field, what was expected, what was found."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 MANUAL = "docs/scene_description.md"
-LONGEST = 80  # characters of what was found that are shown
+LONGEST = 80  # the most characters of a found value that are shown
 
 
 def complaint(error: ValidationError, text: bytes) -> str:
-    """Say what is wrong with the JSON `text`."""
-    # Where a value may have one of two forms, both complain: the one that came further into it is meant.
+    """One line that says what is wrong with the JSON `text`."""
+    # If a value may have one of two forms, both report errors; the form that was parsed further is the intended one.
     detail = max(error.errors(include_url=False), key=lambda one: len(one["loc"]))
     if detail["type"] == "json_invalid":
         return detail["msg"]
@@ -49,7 +49,7 @@ def _shown(value: Any) -> str:
 
 
 def _path(document: Any, location: Sequence[int | str]) -> str:
-    """A place in the file as one would write it, ``lights[1].radiance``: without pydantic's names of variants."""
+    """A place in the file as one would write it, ``lights[1].radiance``, without pydantic's names of variants."""
     path, here = "", document
     for step in location:
         if isinstance(here, list) and isinstance(step, int) and step < len(here):

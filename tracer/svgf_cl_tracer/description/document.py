@@ -21,7 +21,7 @@ from .view import View
 FILE_NAME = "scene.json"
 MAX_BYTES = 2**24
 
-# From the model's frame to the world's, whose +y is up: a turn about +x.
+# From the model's frame to the world's, in which +y is up: a rotation about +x.
 TURNS = {"y": np.eye(4), "z": np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], np.float64)}
 
 
@@ -68,7 +68,7 @@ class SceneDescription(Part, title="Scene"):
         return _as_list(self.animation)
 
     def to_world(self) -> Float64:
-        """The transform (4, 4) from the model's frame into the world's."""
+        """The transform (4, 4) from the model's frame into the world."""
         return TURNS[self.up_axis] @ np.diag([*3 * [self.metres_per_unit], 1.0])
 
 
@@ -84,7 +84,7 @@ def read_description(path: Path) -> SceneDescription:
     Raises
     ------
     SceneError
-        It is not JSON, or a field is missing, unknown or out of range; the error names the first such field.
+        If it is not JSON, or a field is missing, unknown or out of range; the error names the first such field.
     """
     if path.stat().st_size > MAX_BYTES:
         raise SceneError(f"{path}: expected at most {MAX_BYTES} bytes, found {path.stat().st_size}")

@@ -15,7 +15,7 @@ from .values import Direction, NonNegative, Part, Position, Radiance, Vector, un
 
 Irradiance = Annotated[tuple[NonNegative, NonNegative, NonNegative], unit("linear r, g, b irradiance")]
 
-# Two triangles of a rectangle: how far along either edge each corner lies.
+# The corners of a rectangle's two triangles, as shares of both edges.
 SQUARE = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]], np.float64)
 
 
@@ -30,7 +30,7 @@ class SunLight(Part, title="sun"):
     )
 
     def light(self) -> Sun:
-        """The same as the tracer's own class."""
+        """The light as the tracer's own class."""
         return Sun(self.direction_to_light, self.irradiance, self.angular_radius_deg)
 
 
@@ -77,7 +77,7 @@ class Rectangle(Part, title="rect"):
     radiance: Radiance = Field(description="Radiance that it emits.")
 
     def instance(self) -> Instance:
-        """The same as the tracer's own class."""
+        """The light as the tracer's own class."""
         corners = np.array(self.corner) + SQUARE[..., :1] * self.edge_u + SQUARE[..., 1:] * self.edge_v
         return Instance(corners, Material((0.0, 0.0, 0.0), self.radiance))
 

@@ -12,7 +12,7 @@ from svgf_cl_tracer.materials import Material
 
 from .values import Index, Part, Radiance, Reflectance, Share
 
-# Opacity below which there is a hole where the model does not say.
+# Opacity below which there is a hole, if the model does not define it.
 CUTOFF = 0.5
 
 Zero = Annotated[float, Field(ge=0, le=0)]
@@ -41,7 +41,7 @@ class Surface(Part):
         Raises
         ------
         SceneError
-            A texture is needed, and the model's material has none; or the mask needs one.
+            If a texture or mask needs the texture of the model's material, and there is none.
         """
         if self.base_texture and model.base_texture is None:
             raise SceneError("base_texture: expected a texture in the model, found none")

@@ -1,4 +1,4 @@
-"""From a description and its model to a scene."""
+"""Makes a scene from a description and its model."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ def described_scene(
     Parameters
     ----------
     folder : Path
-        With a scene.json in it.
+        A folder with a scene.json.
     sky : (r, g, b) or Environment, optional
-        In place of the description's own.
+        Replaces the sky of the description.
     alternative_lights : bool
-        Light it by `alternative_lights` of the description.
+        Use `alternative_lights` of the description.
 
     Raises
     ------
     SceneError
-        The description or its model cannot be used, or one does not fit the other.
+        If the description or its model cannot be used, or the two do not match.
     """
     path = folder / FILE_NAME
     description = read_description(path)
@@ -69,11 +69,12 @@ def _chosen(description: SceneDescription, alternative: bool) -> Sequence[AnyLig
 
 
 def _inside(folder: Path, name: str) -> Path:
-    """The file `name` in `folder` or below: a description from elsewhere reads nothing else."""
+    """The file `name` in `folder` or below it; a description must not read any other files."""
     try:
         path = (folder / name).resolve()
         path.is_file()
-    except (OSError, RuntimeError, ValueError) as error:  # a loop of links, a name too long or with a zero in it
+    # a loop of links, a name that is too long, or a name with a zero byte
+    except (OSError, RuntimeError, ValueError) as error:
         raise SceneError(f"expected the name of a file, found {name!r}: {error}") from error
     if not path.is_relative_to(folder.resolve()):
         raise SceneError(f"expected a file inside the scene's folder, found {name!r}")
@@ -90,7 +91,7 @@ def _sky(folder: Path, lights: Sequence[AnyLight]) -> Colour | Environment | Non
 
 
 def _animated(model: Model, animations: Sequence[AnyAnimation]) -> Model:
-    """The model with its nodes moving."""
+    """The model with motion added to its nodes."""
     for animation in animations:
         _check_names("animation: nodes", animation.nodes, model.nodes)
         model = model.carried(frozenset(animation.nodes), animation.motion())
@@ -98,7 +99,7 @@ def _animated(model: Model, animations: Sequence[AnyAnimation]) -> Model:
 
 
 def _painted(model: Model, materials: Mapping[str, AnyMaterial], lights: Sequence[AnyLight]) -> Model:
-    """The model with the materials described, and those of area lights shining."""
+    """The model with the described materials; materials of area lights emit light."""
     radiance = {light.material: light.radiance for light in lights if isinstance(light, AreaLight)}
     known = {item.material for item in model.objects}
     _check_names("materials", materials, known)
@@ -122,7 +123,7 @@ def _described(name: str, description: AnyMaterial, material: Material) -> Mater
 
 
 def _check_names(where: str, names: Iterable[str], known: Set[str]) -> None:
-    """Raise `SceneError` unless the model knows all of `names`."""
+    """Raise `SceneError` unless the model has all of `names`."""
     for name in names:
         if name not in known:
             there = ", ".join(sorted(filter(None, known))) or "it names none"

@@ -1,4 +1,4 @@
-"""What all parts of a description are made of."""
+"""The base class and the units of all parts of a description."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from pydantic import BaseModel, ConfigDict, Field
 
 
 class Part(BaseModel):
-    """An object of the file: nothing in it is unknown, nothing is turned into another type, nothing changes."""
+    """An object of the file: unknown fields are errors, values are not converted, and it cannot be changed."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
 
 def unit(name: str) -> Any:
-    """Say in what unit numbers are."""
+    """Field metadata with the unit of a number."""
     return Field(json_schema_extra={"unit": name})
 
 

@@ -32,5 +32,5 @@ class View(Part, title="Camera"):
     )
 
     def camera(self) -> Camera:
-        """The tracer's own."""
+        """The camera as the tracer's own class."""
         return Camera(self.position, self.look_at, self.up, self.fov_y_deg, self.aperture, self.shutter)

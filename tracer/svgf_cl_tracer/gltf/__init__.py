@@ -1,4 +1,4 @@
-"""glTF and GLB files: meshes, nodes, motion, materials, lights and cameras; what is lost of a file is named."""
+"""glTF and GLB files: meshes, nodes, motion, materials, lights and cameras; warnings name what is not shown."""
 
 from .model import load_gltf
 

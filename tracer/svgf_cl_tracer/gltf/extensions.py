@@ -1,4 +1,4 @@
-"""The extensions of glTF, by what becomes of a file that uses them. All others are named in a warning, or refused."""
+"""How each extension of glTF is treated. All extensions that are not listed give a warning or an error."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ READ = {
     "KHR_mesh_quantization",
 }
 
-# A file that does not require these holds the same numbers or images a second time, without them.
+# If a file uses these without requiring them, it also has the same numbers or images without them.
 WITH_FALLBACK = {DRACO, "EXT_meshopt_compression", "KHR_meshopt_compression", "KHR_texture_basisu", "MSFT_texture_dds"}
 
-# They change nothing in the picture.
+# These do not change the picture.
 INVISIBLE = {
     "EXT_instance_features",
     "EXT_mesh_features",

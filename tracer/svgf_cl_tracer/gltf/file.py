@@ -1,4 +1,4 @@
-"""The file itself: its JSON, and the numbers in its buffers."""
+"""A glTF file: its JSON, and the numbers in its buffers."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Thing = TypeVar("Thing")
 COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 COLUMNS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 
-# An accessor may stand for zeros that the file does not hold: a few bytes for any number of them.
+# An accessor may have zeros that are not in the file, so a few bytes may stand for any number of them.
 MAX_ZEROS = 2**22
 
 
@@ -40,7 +40,7 @@ class Gltf:
     document : dict
         Its JSON.
     binary : bytes, optional
-        The buffer that a binary file holds beside it.
+        The buffer that follows the JSON in a binary file.
     """
 
     path: Path
@@ -55,9 +55,9 @@ class Gltf:
         Raises
         ------
         SceneError
-            It is of another version, or needs an extension that is not known here.
+            If it has another version, or needs an extension that is not known here.
         ValueError, struct.error
-            It is no glTF.
+            If it is not a glTF file.
         """
         data, binary = path.read_bytes(), None
         if data[:4] == b"glTF":
@@ -76,16 +76,16 @@ class Gltf:
         return cls(path, document, binary)
 
     def item(self, kind: str, index: Any) -> dict[str, Any]:
-        """The JSON object at `index` of the list `kind`, such as ``"nodes"``; `SceneError` where there is none."""
+        """The JSON object at `index` of the list `kind`, such as ``"nodes"``; `SceneError` if there is none."""
         return entry(self.document.get(kind, []), kind, index)
 
     def numbers(self, accessor: int) -> Float64:
-        """The values (n, components) of an accessor; integers that stand for fractions are turned into these.
+        """The values (n, components) of an accessor; normalized integers are converted to fractions.
 
         Raises
         ------
         SceneError
-            The file does not have them.
+            If the file does not contain them.
         """
         values = self.values(accessor)
         numbers: Float64 = values.astype(np.float64)
@@ -94,7 +94,10 @@ class Gltf:
         return numbers
 
     def values(self, accessor: int) -> NDArray[Any]:
-        """The values (n, components) of an accessor as the file has them; `SceneError` where it does not."""
+        """The values (n, components) of an accessor as they are stored.
+
+        `SceneError` if the file does not contain them.
+        """
         layout, where = self.item("accessors", accessor), f"accessors[{accessor}]"
         values: NDArray[Any]
         if "bufferView" in layout:
@@ -106,7 +109,7 @@ class Gltf:
         return self._replaced(where, values, layout) if "sparse" in layout else values
 
     def view(self, index: Any) -> memoryview:
-        """The bytes of a buffer view; `SceneError` where the file does not have them."""
+        """The bytes of a buffer view; `SceneError` if the file does not contain them."""
         view = self.item("bufferViews", index)
         buffer, start, length = self._buffer(view.get("buffer")), view.get("byteOffset", 0), view.get("byteLength")
         if not (isinstance(start, int) and isinstance(length, int) and 0 <= start <= start + length <= len(buffer)):
@@ -116,7 +119,7 @@ class Gltf:
         return memoryview(buffer)[start : start + length]
 
     def _replaced(self, where: str, values: NDArray[Any], layout: dict[str, Any]) -> NDArray[Any]:
-        """`values` with those replaced that a sparse accessor lists."""
+        """`values`, with those replaced that a sparse accessor lists."""
         sparse = layout["sparse"]
         result: NDArray[Any] = values.copy()
         size = {"count": sparse["count"]}
@@ -128,16 +131,16 @@ class Gltf:
         return result
 
     def _block(self, where: str, layout: dict[str, Any]) -> NDArray[Any]:
-        """Numbers (count, components) that lie in a buffer view as `layout` says."""
+        """Numbers (count, components) in a buffer view, as described by `layout`."""
         view = self.item("bufferViews", layout["bufferView"])
         buffer = self._buffer(view.get("buffer"))
         try:
             kind, columns = np.dtype(COMPONENTS[layout["componentType"]]), COLUMNS[layout["type"]]
             row = columns * kind.itemsize
             start, stride = view.get("byteOffset", 0) + layout.get("byteOffset", 0), view.get("byteStride", row)
-            if stride < row:  # rows that overlap: a few bytes would stand for any number of them
+            if stride < row:  # rows that overlap, so that a few bytes would give any number of rows
                 raise ValueError(f"a byteStride of {stride}")
-            # Raises where the buffer is too short.
+            # Raises an error if the buffer is too short.
             shape, strides = (layout["count"], columns), (stride, kind.itemsize)
             values: NDArray[Any] = np.ndarray(shape, kind, buffer, start, strides)
         except (KeyError, TypeError, ValueError) as error:
@@ -159,7 +162,7 @@ class Gltf:
 
 
 def _chunks(data: bytes) -> dict[bytes, bytes]:
-    """The chunks of a binary file by their kind, the first of each; `struct.error` where one is cut off."""
+    """The chunks of a binary file by kind, the first one of each; `struct.error` if a chunk is truncated."""
     found: dict[bytes, bytes] = {}
     start = GLB_HEADER.size
     while start < len(data):
@@ -171,12 +174,12 @@ def _chunks(data: bytes) -> dict[bytes, bytes]:
 
 
 def entry(things: Sequence[Thing], kind: str, index: Any) -> Thing:
-    """The one of `things` that a file names by `index`.
+    """The element of `things` with the `index` that a file gives.
 
     Raises
     ------
     SceneError
-        There is none, or it is named from the end, as files cannot.
+        If there is none, or the index is negative, which files do not allow.
     """
     if not isinstance(index, int) or not 0 <= index < len(things):
         raise SceneError(f"{kind}: expected an index from 0 and below {len(things)}, found {index!r}")
@@ -184,7 +187,7 @@ def entry(things: Sequence[Thing], kind: str, index: Any) -> Thing:
 
 
 def name_of(document: dict[str, Any]) -> str:
-    """What a node or material is called, if anything; `SceneError` where that is no text."""
+    """The name of a node or material, empty if it has none; `SceneError` if the name is not text."""
     name = document.get("name", "")
     if not isinstance(name, str):
         raise SceneError(f"name: expected a text, found {name!r}")

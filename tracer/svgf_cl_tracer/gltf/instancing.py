@@ -1,4 +1,4 @@
-"""EXT_mesh_gpu_instancing: a node's mesh shown many times, each at a place of its own within the node's frame."""
+"""EXT_mesh_gpu_instancing: shows a node's mesh many times, at several places in the node's frame."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from .file import COLUMNS, Gltf
 
 TYPES = {"TRANSLATION": "VEC3", "ROTATION": "VEC4", "SCALE": "VEC3"}
 
-# Of one node: each becomes an object of its own.
+# The most instances of one node, each of which becomes an object.
 MAX_INSTANCES = 2**18
 
 
 def places(gltf: Gltf, node: dict[str, Any]) -> list[Float64]:
-    """Where within its own frame a node shows its mesh: transforms (4, 4), one at rest unless the file has others.
+    """The places of a node's mesh in the node's frame: transforms (4, 4); one identity if the file lists none.
 
     Raises
     ------
     SceneError
-        The file does not have their numbers, or they do not fit one another.
+        If the file does not contain their numbers, or the numbers do not match.
     """
     extension = node.get("extensions", {}).get(INSTANCING)
     if extension is None:

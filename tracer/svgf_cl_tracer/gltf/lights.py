@@ -1,7 +1,7 @@
-"""Lights (KHR_lights_punctual) and cameras of a file, each where its node is.
+"""Lights (KHR_lights_punctual) and cameras of a file, placed by their nodes.
 
-The extension's candela and lux stay as they are, as do the nits of KHR_materials_emissive_strength: radiance is in nits
-then.
+The extension's units, candela and lux, are kept, and so are the nits of KHR_materials_emissive_strength. So radiance is
+in nits.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def _light(document: dict[str, Any], motion: Motion) -> PointLight | Sun:
 
 
 def read_camera(gltf: Gltf, nodes: Nodes) -> Eye | None:
-    """The first camera among the scene's nodes; None where there is none."""
+    """The first camera among the scene's nodes; None if there is none."""
     for chain in nodes.chains():
         node = nodes.node(chain)
         if "camera" in node:

@@ -1,4 +1,4 @@
-"""What of a file is not shown, or not as the file has it, told from its JSON."""
+"""Finds in a file's JSON what will be missing or different in the picture."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ from .nodes import REST, Nodes
 from .primitives import MODES, TRIANGLES, is_shown, mode_of
 from .textures import Coordinates
 
-# Parts of a material that are not read at all.
+# Parts of a material that are not read.
 UNREAD_TEXTURES = ("normalTexture", "occlusionTexture")
 UNREAD_EXTENSION_TEXTURES = ("transmissionTexture", "specularTexture", "specularColorTexture")
 
 FLOAT, REPEAT, NEAREST = 5126, 10497, 9728
 
-# Steps of single precision across a mesh: with fewer its shape is seen to be rounded.
+# Number of steps of single precision across a mesh; with fewer steps, rounding of its shape becomes visible.
 FINE = 1000
 
 
 def losses_of(gltf: Gltf, nodes: Nodes) -> Losses:
-    """What a user should know who expects to see the file as it is.
+    """What will differ from the file, as a user should know.
 
     Parameters
     ----------
     gltf : Gltf
     nodes : Nodes
-        Those that are shown.
+        The nodes that are shown.
     """
     losses, chains = Losses(), list(nodes.chains())
     shown = [nodes.node(chain) for chain in chains]
@@ -55,12 +55,12 @@ def losses_of(gltf: Gltf, nodes: Nodes) -> Losses:
 
 
 def _used(documents: Iterable[dict[str, Any]], key: str) -> list[int]:
-    """The places that `documents` name by `key`, each once."""
+    """The indices that `documents` give for `key`, each once."""
     return list(dict.fromkeys(document[key] for document in documents if key in document))
 
 
 def _extensions(document: dict[str, Any]) -> Iterator[str]:
-    """The names of all extensions somewhere in the file."""
+    """The names of all extensions anywhere in the file."""
     waiting: list[Any] = [document]
     while waiting:
         value = waiting.pop()
@@ -73,7 +73,7 @@ def _extensions(document: dict[str, Any]) -> Iterator[str]:
 
 
 def _called(kind: str, index: int, document: dict[str, Any]) -> str:
-    """The name of a thing, or its place in the file where it has none."""
+    """The name of an object, or its index in the file if it has no name."""
     return quoted(name) if (name := name_of(document)) else f"{kind}[{index}]"
 
 
@@ -107,14 +107,14 @@ def _add_primitive(losses: Losses, gltf: Gltf, primitive: dict[str, Any]) -> Non
 
 
 def _is_coarse(positions: dict[str, Any]) -> bool:
-    """Whether single precision has few steps across what has these positions, as it is far from 0."""
+    """Whether single precision has few steps across a mesh with these positions, because it is far from 0."""
     least, most = (np.array(positions.get(name, 0.0), np.float64) for name in ("min", "max"))
     step = np.spacing(np.float32(np.abs([least, most]).max()))
     return bool(positions["componentType"] == FLOAT and step * FINE > np.max(most - least) > 0.0)
 
 
 def _add_mismatches(losses: Losses, gltf: Gltf, attributes: dict[str, int], material: dict[str, Any]) -> None:
-    """What a material asks of a mesh that does not have it, and the other way round."""
+    """Add what a material needs and the mesh lacks, and what the mesh has and the material does not use."""
     texture = base_texture(material) or material.get("emissiveTexture")
     if texture and (wanted := Coordinates.of(texture).attribute) not in attributes:
         losses.add("primitives without the coordinates of their texture, which show one texel of it", wanted)
@@ -155,7 +155,7 @@ def _changed(gltf: Gltf, material: dict[str, Any]) -> Iterator[str]:
 
 
 def _sampler(gltf: Gltf, texture: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """How a texture is looked up, where the file says so."""
+    """How a texture is sampled, if the file defines it."""
     document = gltf.item("textures", texture["index"])
     if "sampler" in document:
         yield gltf.item("samplers", document["sampler"])

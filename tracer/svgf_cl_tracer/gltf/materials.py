@@ -1,4 +1,4 @@
-"""Materials of a file: the core's metallic-roughness model with the extensions that the tracer can show."""
+"""Materials of a file: the core's metallic-roughness model, and the extensions that the tracer can show."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from .textures import Coordinates, Textures
 
 BLACK, WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 
-# What the core specification and KHR_materials_ior have where a file says nothing.
+# Defaults of the core specification and of KHR_materials_ior.
 CUTOFF, IOR = 0.5, 1.5
 
-# A coat that reflects all is no material: an index near 200.
+# The largest index; a coat that reflects everything would not be a material.
 MAX_REFLECTANCE = 0.98
 
 
-# Of a primitive that names none; where it has colours, these are all there is.
+# The material of a primitive that has none; vertex colours multiply it.
 UNNAMED, UNNAMED_COLOURED = Material(), Material(WHITE)
 
 
@@ -41,7 +41,10 @@ class Materials:
         self._made: dict[int, Material | None] = {}
 
     def of(self, index: int | None, *, coloured: bool = False) -> tuple[str, Material | None]:
-        """Name and material number `index`, on a mesh that may be coloured; None where nothing of it can be seen."""
+        """The name and the material number `index`, for a mesh that may have colours.
+
+        None if the material is invisible.
+        """
         if index is None:
             return "", UNNAMED_COLOURED if coloured else UNNAMED
         document = self._gltf.item("materials", index)
@@ -50,7 +53,7 @@ class Materials:
         return name_of(document), self._made[index]
 
     def coordinates(self, index: int | None) -> Coordinates:
-        """Where the textures of material number `index` lie on a mesh: the base colour's, else those of emission."""
+        """The texture coordinates of material number `index`: those of its base colour, or else of its emission."""
         document = {} if index is None else self._gltf.item("materials", index)
         return Coordinates.of(base_texture(document) or document.get("emissiveTexture") or {})
 
@@ -77,7 +80,7 @@ class Materials:
         )
 
     def _pixels(self, document: dict[str, Any], name: str) -> Image | None:
-        """The image of the texture called `name` of a material; None where it has none."""
+        """The image of a material's texture `name`; None if it has none."""
         texture = (document if name in document else document.get("pbrMetallicRoughness", {})).get(name)
         try:
             return None if texture is None else self._textures.pixels(texture)
@@ -86,7 +89,7 @@ class Materials:
 
 
 def base_texture(document: dict[str, Any]) -> dict[str, Any] | None:
-    """The textureInfo of a material's base colour, if it has one."""
+    """The textureInfo of a material's base colour; None if it has none."""
     texture: dict[str, Any] | None = document.get("pbrMetallicRoughness", {}).get("baseColorTexture")
     return texture
 
@@ -97,7 +100,7 @@ def _extension(document: dict[str, Any], name: str) -> dict[str, Any]:
 
 
 def _cutoff(document: dict[str, Any]) -> float | None:
-    """Opacity below which there is a hole; None where all is solid. What is blended counts as cut out at one half."""
+    """The opacity below which there is a hole; None if the material is solid. Blended materials get one half."""
     mode = document.get("alphaMode", "OPAQUE")
     if mode == "OPAQUE":
         return None
@@ -105,9 +108,9 @@ def _cutoff(document: dict[str, Any]) -> float | None:
 
 
 def _coat(document: dict[str, Any]) -> float:
-    """The refractive index whose reflectance at normal incidence is that of `document`.
+    """The refractive index that has the same reflectance at normal incidence as the material.
 
-    KHR_materials_ior has an index, 0 of which is a mirror's; KHR_materials_specular a factor and a colour.
+    KHR_materials_ior has an index, where 0 means a mirror; KHR_materials_specular has a factor and a colour.
     """
     ior, specular = _extension(document, "ior").get("ior", IOR), _extension(document, "specular")
     tint = np.mean(specular.get("specularColorFactor", WHITE))
@@ -117,7 +120,7 @@ def _coat(document: dict[str, Any]) -> float:
 
 
 def _means(image: Image | None) -> tuple[float, float]:
-    """Roughness and metalness, 0..1, averaged over their texture, whose channels two and three they are."""
+    """Roughness and metalness, 0..1: the means of the second and third channel of their texture."""
     if image is None:
         return 1.0, 1.0
     _, rough, metal = image[..., :3].mean((0, 1)) / 255.0

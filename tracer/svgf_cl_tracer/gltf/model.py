@@ -1,4 +1,4 @@
-"""All of a file together."""
+"""Loads a glTF file."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ from .materials import Materials
 from .nodes import Nodes
 from .primitives import Primitive, is_shown, read_primitive
 
-# Each takes a few hundred bytes; a small file may show the same mesh in any number of nodes.
+# The most objects. Each takes a few hundred bytes, and even a small file may show a mesh in any number of nodes.
 MAX_TRIANGLES = 2**25
 
 
 def load_gltf(path: Path, to_world: Float64) -> Model:
-    """Load the default scene of a .gltf or .glb file; a warning each names what is not shown as the file has it.
+    """Load the default scene of a .gltf or .glb file; warnings say what is shown differently from the file.
 
     Parameters
     ----------
     path : Path
     to_world : (4, 4) float
-        From the file's frame into the world's.
+        From the file's frame into the world.
 
     Raises
     ------
     SceneError
-        It holds something that would be shown wrongly.
+        If it contains something that would be shown wrongly.
     Exception
-        Of many kinds, where the file is damaged.
+        If the file is damaged; errors of many kinds are possible.
     """
     gltf = Gltf.read(path)
     nodes = Nodes(gltf, to_world)
@@ -47,7 +47,7 @@ def load_gltf(path: Path, to_world: Float64) -> Model:
 
 
 def _objects(gltf: Gltf, nodes: Nodes) -> Iterator[Object]:
-    """An object for each primitive of each node, as often as the node shows it."""
+    """An object for each primitive of each node, for each place where the node shows it."""
     materials, meshes, room = Materials(gltf), dict[int, list[Primitive]](), MAX_TRIANGLES
     for chain in nodes.chains():
         node = nodes.node(chain)

@@ -1,4 +1,4 @@
-"""The nodes of a file: what hangs on what, and how each moves."""
+"""The nodes of a file: their hierarchy and their motion."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from svgf_cl_tracer.vectors import Float64
 
 from .file import Gltf, entry, name_of
 
-# Where a node stands that says nothing of it.
+# The transform of a node that defines none.
 REST = {"translation": (0.0, 0.0, 0.0), "rotation": (0.0, 0.0, 0.0, 1.0), "scale": (1.0, 1.0, 1.0)}
 
-# Of real ones a few dozen are below one another; what a node's place is made of grows with their number.
+# Real files have a few dozen levels of nodes; the cost of a node's transform grows with its level.
 MAX_DEPTH = 256
 
-# A node's index after those of its ancestors, outermost first.
+# The indices of a node's ancestors, outermost first, and its own index.
 Chain = tuple[int, ...]
 
 
 class Nodes:
-    """The nodes of a file's default scene. The first of its animations plays, once; other clips are left out.
+    """The nodes of a file's default scene. The first of its animations plays once; other animations are not used.
 
     Parameters
     ----------
     gltf : Gltf
     to_world : (4, 4) float
-        From the file's frame into the world's.
+        From the file's frame into the world.
     """
 
     def __init__(self, gltf: Gltf, to_world: Float64) -> None:
@@ -41,16 +41,16 @@ class Nodes:
         self._channels: dict[int, dict[str, int]] = defaultdict(dict)
         for channel in self._animation["channels"]:
             target = channel["target"]
-            if "node" in target and target["path"] in REST:  # a path beside these is for a morph target
+            if "node" in target and target["path"] in REST:  # other paths are for morph targets
                 self._channels[target["node"]][target["path"]] = channel["sampler"]
 
     def chains(self) -> Iterator[Chain]:
-        """Every node, parents before children, in the order of the file.
+        """All nodes, parents before children, in the order of the file.
 
         Raises
         ------
         SceneError
-            A node is not there or hangs on two others, or too many are below one another.
+            If a node is missing or has two parents, or if the hierarchy is too deep.
         """
         waiting: list[Chain] = [(root,) for root in reversed(self._roots())]
         seen = set()
@@ -65,7 +65,7 @@ class Nodes:
             waiting += [(*chain, child) for child in reversed(self.node(chain).get("children", []))]
 
     def _roots(self) -> list[int]:
-        """The nodes on which all others hang: those of the default scene, or of the file where it has no scenes."""
+        """The root nodes: those of the default scene, or of the file if it has no scenes."""
         document = self._gltf.document
         if "scene" in document or document.get("scenes"):
             roots: list[int] = self._gltf.item("scenes", document.get("scene", 0)).get("nodes", [])
@@ -79,16 +79,16 @@ class Nodes:
         return self._gltf.item("nodes", chain[-1])
 
     def names(self, chain: Chain) -> tuple[str, ...]:
-        """What the node and its ancestors are called, outermost first."""
+        """The names of the node's ancestors, outermost first, and its own name."""
         return tuple(name_of(self._gltf.item("nodes", index)) for index in chain)
 
     def motion(self, chain: Chain) -> Motion:
-        """The node's way through the world.
+        """The node's motion in the world.
 
         Raises
         ------
         SceneError
-            It is animated in a way that is not read.
+            If it is animated in a way that is not supported.
         """
         for index in chain:
             if index not in self._links:
@@ -96,14 +96,14 @@ class Nodes:
         return Motion([self._to_world, *(self._links[index] for index in chain)])
 
     def _link(self, index: int) -> Keyframes | Float64:
-        """A node's transform into the frame of its parent; `Keyframes` where it moves."""
+        """The transform of a node into its parent's frame; `Keyframes` if it moves."""
         node, channels = self._gltf.item("nodes", index), self._channels[index]
         if "matrix" in node and channels:
             raise SceneError(f"nodes[{index}]: expected no matrix on a node that is animated, found one")
         if "matrix" in node and REST.keys() & node.keys():
             raise SceneError(f"nodes[{index}]: expected a matrix or {', '.join(REST)}, found both; keep one of them")
         if "matrix" in node:
-            matrix: Float64 = np.array(node["matrix"], np.float64).reshape(4, 4).T  # it is stored by columns
+            matrix: Float64 = np.array(node["matrix"], np.float64).reshape(4, 4).T  # it is stored column by column
             return matrix
         tracks = {path: Track([0.0], [node.get(path, rest)]) for path, rest in REST.items()}
         tracks |= {path: self._track(sampler) for path, sampler in channels.items()}

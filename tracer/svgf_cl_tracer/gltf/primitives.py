@@ -1,7 +1,7 @@
-"""The triangles of a file's meshes, one `Mesh` a primitive.
+"""The triangles of a file's meshes, one `Mesh` for each primitive.
 
-They are read here and not by trimesh: it reads integer texture coordinates as they are stored, leaves out strips, fans
-and, beside a material, vertex colours, and says nothing of it.
+trimesh is not used for this, because it does not scale integer texture coordinates. Without a warning, it leaves out
+strips, fans and (if there is a material) vertex colours.
 """
 
 from __future__ import annotations
@@ -26,31 +26,31 @@ MODES = ("points", "lines", "line loops", "line strips", "triangles", "triangle 
 
 @dataclass(frozen=True, eq=False)
 class Primitive:
-    """A part of a mesh, and the number of its material; None where it has none."""
+    """A part of a mesh, and the number of its material; None if it has no material."""
 
     mesh: Mesh
     material: int | None
 
 
 def mode_of(document: dict[str, Any]) -> int:
-    """What the corners of a primitive make; `SceneError` where it is none of `MODES`."""
+    """How the corners of a primitive form triangles; `SceneError` if it is none of `MODES`."""
     mode = document.get("mode", TRIANGLES)
     entry(MODES, "mode", mode)
     return int(mode)
 
 
 def is_shown(document: dict[str, Any]) -> bool:
-    """Whether a primitive makes triangles."""
+    """Whether a primitive consists of triangles."""
     return mode_of(document) >= TRIANGLES and "POSITION" in document["attributes"]
 
 
 def read_primitive(gltf: Gltf, document: dict[str, Any], coordinates: Coordinates) -> Primitive:
-    """Read a primitive that is shown, with those `coordinates` that its textures ask for.
+    """Read a primitive that is shown, with the texture `coordinates` that its textures need.
 
     Raises
     ------
     SceneError
-        The file does not have its numbers, or they do not fit one another.
+        If the file does not contain its numbers, or the numbers do not match.
     """
     attributes = document["attributes"]
     if DRACO in document.get("extensions", {}) and "bufferView" not in gltf.item("accessors", attributes["POSITION"]):
@@ -73,7 +73,7 @@ def read_primitive(gltf: Gltf, document: dict[str, Any], coordinates: Coordinate
 
 
 def triangles(corners: NDArray[np.int64], mode: int) -> NDArray[np.int64]:
-    """The triangles (F, 3) that `corners` (N,) make; a rest that makes no whole one is left out.
+    """The triangles (F, 3) that `corners` (N,) form; an incomplete last triangle is left out.
 
     Source of the order of corners: glTF 2.0, 3.7.2.1.
     """
@@ -82,12 +82,12 @@ def triangles(corners: NDArray[np.int64], mode: int) -> NDArray[np.int64]:
     first = np.arange(max(len(corners) - 2, 0))
     if mode == TRIANGLE_FAN:
         return np.stack([corners[first + 1], corners[first + 2], np.broadcast_to(corners[:1], len(first))], axis=1)
-    odd = first % 2  # every other one is turned over
+    odd = first % 2  # every other triangle has the opposite orientation
     return np.stack([corners[first], corners[first + 1 + odd], corners[first + 2 - odd]], axis=1)
 
 
 def _attribute(gltf: Gltf, accessor: int, kinds: tuple[str, ...]) -> Float64:
-    """The numbers (V, components) of an accessor that is of one of `kinds`."""
+    """The numbers (V, components) of an accessor, whose type must be one of `kinds`."""
     _check_type(gltf, accessor, kinds)
     return gltf.numbers(accessor)
 
@@ -99,7 +99,7 @@ def _check_type(gltf: Gltf, accessor: int, kinds: tuple[str, ...]) -> None:
 
 
 def _indices(gltf: Gltf, document: dict[str, Any], count: int) -> NDArray[np.int64]:
-    """The corners (N,) of a primitive with `count` vertices, as numbers of these."""
+    """The corners (N,) of a primitive, as indices of its `count` vertices."""
     if "indices" not in document:
         return np.arange(count)
     accessor = document["indices"]

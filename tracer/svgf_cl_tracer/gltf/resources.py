@@ -1,4 +1,4 @@
-"""What a URI in the file stands for: data in the URI itself, or a file beside the model."""
+"""Reads what a URI in the file refers to: data in the URI itself, or a file beside the model."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from svgf_cl_tracer.folder import found_inside
 
 
 def resource(folder: Path, uri: str) -> bytes:
-    """The bytes that `uri` stands for in a model that lies in `folder`.
+    """The bytes that `uri` refers to, for a model in `folder`.
 
     Raises
     ------
     SceneError
-        It leads out of the folder, or to nothing, or its data is damaged.
+        If it leads out of the folder, or to nothing, or its data is damaged.
     """
     scheme, _, rest = uri.partition(":")
     if scheme.lower() == "data":
         return _embedded(rest)
-    # The name as it stands comes second: many exporters write spaces, umlauts or % as they are.
+    # The name is also tried undecoded: many exporters write spaces, umlauts or % without encoding.
     path = found_inside(folder, unquote(uri), folder) or found_inside(folder, uri, folder)
     if path is None:
         raise SceneError(f"expected a file in the model's folder or below, found none called {shown(unquote(uri))}")
@@ -31,7 +31,7 @@ def resource(folder: Path, uri: str) -> bytes:
 
 
 def _embedded(data: str) -> bytes:
-    """What follows ``data:`` (RFC 2397), with any media type; padding may be missing."""
+    """Decode the part after ``data:`` (RFC 2397), of any media type; padding may be missing."""
     head, comma, body = data.partition(",")
     raw = unquote_to_bytes(body)
     if not comma:

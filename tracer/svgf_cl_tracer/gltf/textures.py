@@ -1,4 +1,4 @@
-"""Textures of a file: their images, and where on a surface they lie."""
+"""Textures of a file: their images and their texture coordinates."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from .resources import resource
 
 @dataclass(frozen=True)
 class Coordinates:
-    """Which of a mesh's sets of texture coordinates a texture takes, and how it moves them (KHR_texture_transform).
+    """The set of texture coordinates that a texture uses, and their transform (KHR_texture_transform).
 
     Parameters
     ----------
     number : int
-        Of the set.
+        The number of the set.
     offset, scale : (u, v)
     rotation : float
         Radians, counter-clockwise.
@@ -38,7 +38,7 @@ class Coordinates:
 
     @classmethod
     def of(cls, texture: dict[str, Any]) -> Coordinates:
-        """Those of a textureInfo of the file."""
+        """The coordinates of a textureInfo of the file."""
         transform = texture.get("extensions", {}).get(TEXTURE_TRANSFORM, {})
         (u, v), (width, height) = transform.get("offset", cls.offset), transform.get("scale", cls.scale)
         number = transform.get("texCoord", texture.get("texCoord", cls.number))
@@ -46,14 +46,14 @@ class Coordinates:
 
     @property
     def attribute(self) -> str:
-        """What the set is called in a primitive."""
+        """The name of the set in a primitive."""
         return f"TEXCOORD_{self.number}"
 
     def applied(self, uv: Float64) -> Float64:
-        """Texture coordinates (V, 2), v up, for those of the file, whose v points down."""
+        """Convert texture coordinates (V, 2) of the file, whose v points down, to transformed ones with v up."""
         u, v = uv[:, 0] * self.scale[0], uv[:, 1] * self.scale[1]
         cosine, sine = math.cos(self.rotation), math.sin(self.rotation)
-        # Counter-clockwise as seen, v pointing down: the specification's example, not its matrix.
+        # Counter-clockwise as seen, with v down: this follows the specification's example, not its matrix.
         return np.stack(
             [cosine * u + sine * v + self.offset[0], 1.0 - (cosine * v - sine * u + self.offset[1])], axis=1
         )
@@ -71,12 +71,12 @@ class Textures:
         self._gltf, self._images = gltf, Images()
 
     def pixels(self, texture: dict[str, Any]) -> Image:
-        """The image (h, w, 3 or 4) of a textureInfo; `SceneError` where it cannot be read."""
+        """The image (h, w, 3 or 4) of a textureInfo; `SceneError` if it cannot be read."""
         source = self._source(texture["index"])
         return self._images.pixels(str(source), lambda: self._bytes(source))
 
     def _source(self, index: Any) -> int:
-        """The number of the image that a texture shows."""
+        """The number of the image of a texture."""
         texture = self._gltf.item("textures", index)
         holder = texture.get("extensions", {}).get(WEBP, texture)
         if "source" not in holder:

@@ -1,7 +1,8 @@
-"""OBJ files with their MTL materials, read here: small formats, and trimesh goes wrong where files are real.
+"""OBJ files and their MTL materials.
 
-It triangulates faces that are not convex as if they were, takes relative indices for counts from the end of the file,
-loses images behind options or in other case, and says nothing of what it leaves out.
+trimesh is not used for them. It triangulates all faces as if they were convex, and takes relative indices for counts
+from the end of the file. It loses images that have options or names in another case, and says nothing about what it
+leaves out.
 """
 
 from .model import load_obj

@@ -1,4 +1,4 @@
-"""The faces of an OBJ file: what is at their corners."""
+"""The faces of an OBJ file: the indices at their corners."""
 
 from __future__ import annotations
 
@@ -12,21 +12,22 @@ from svgf_cl_tracer.errors import SceneError
 
 from .text import Indices, Lines, parsed, uncommented
 
-# Where a corner names no texture coordinates or no normal.
+# The index of a corner without texture coordinates or without a normal.
 ABSENT = -1
-# In its place while the text is read, where -1 means the last one.
+# Used instead while the text is read, because -1 means the last element there.
 BLANK = np.iinfo(np.int64).min
 
 CORNER = re.compile(r"[+-]?\d+(/([+-]?\d+)?){0,2}")
 
-# What the numbers of a corner are indices of.
+# The elements to which the three indices of a corner refer.
 KINDS = ("v", "vt", "vn")
 
 
 class Faces(NamedTuple):
-    """Faces as arrays: of each the number of its corners and its line; of each corner three indices from 0.
+    """Faces as arrays: the number of corners and the line of each face, and three indices from 0 for each corner.
 
-    Shapes: `counts` and `lines` (F,); `corners` (C, 3), into positions, texture coordinates and normals, or `ABSENT`.
+    Shapes: `counts` and `lines` (F,); `corners` (C, 3), indices of positions, texture coordinates and normals, or
+    `ABSENT`.
     """
 
     counts: Indices
@@ -35,12 +36,12 @@ class Faces(NamedTuple):
 
     @classmethod
     def read(cls, faces: Lines, elements: tuple[Lines, Lines, Lines]) -> Faces:
-        """Read the lines of faces; `elements` are those of what they name.
+        """Read the lines of faces; `elements` are the lines of the elements to which they refer.
 
         Raises
         ------
         SceneError
-            Something else than corners is on a line, or there is nothing with such an index.
+            If a line has something other than corners, or there is no element with an index.
         """
         text, starts, counts = faces.words()
         try:
@@ -66,13 +67,13 @@ class Faces(NamedTuple):
         return cls(counts, lines, corners)
 
     def with_area(self) -> Faces:
-        """Those of three corners or more."""
+        """The faces with three corners or more."""
         kept = self.counts >= 3
         return Faces(self.counts[kept], self.lines[kept], self.corners[kept.repeat(self.counts)])
 
 
 def _numbers(text: bytes, starts: Indices) -> Indices:
-    """The numbers (C, 3) of corners such as ``1``, ``1/2``, ``1//3`` and ``1/2/3``; `BLANK` where there is none."""
+    """The numbers (C, 3) of corners such as ``1``, ``1/2``, ``1//3`` and ``1/2/3``; `BLANK` for a missing number."""
     places = np.flatnonzero(np.frombuffer(text, np.uint8) == ord("/"))
     slashes = np.bincount(np.searchsorted(starts, places, "right") - 1, minlength=len(starts))
     if slashes.max(initial=0) > 2:
@@ -87,7 +88,7 @@ def _numbers(text: bytes, starts: Indices) -> Indices:
 
 
 def _complaint(faces: Lines) -> str:
-    """What is wrong with the first line that does not consist of corners."""
+    """What is wrong in the first line that does not consist of corners."""
     for line, text in zip(faces.numbers, faces.texts, strict=True):
         for word in uncommented(text).split():
             if not CORNER.fullmatch(word):

@@ -1,4 +1,4 @@
-"""MTL files: the statements of each material, and the images that they name."""
+"""MTL files: the statements of each material, and the images to which they refer."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from svgf_cl_tracer.errors import SceneError
 
 from .text import clean, floats, is_number, read_text, statements, uncommented
 
-# Options of an image, and how many words follow each at most: one, and further ones where they are numbers.
+# Options of an image, and the most words that may follow each: the first is always taken, further ones if they are
+# numbers.
 OPTIONS = {
     "-blendu": 1,
     "-blendv": 1,
@@ -30,14 +31,14 @@ OPTIONS = {
 
 
 class Map(NamedTuple):
-    """An image as a material names it: its file, and the words behind each option."""
+    """An image of a material: its file, and the words after each option."""
 
     name: str
     options: dict[str, list[str]]
 
     @classmethod
     def of(cls, text: str) -> Map:
-        """Take apart options and a name that may hold spaces; some programs write options behind the name."""
+        """Split options from a name that may contain spaces; some programs write options after the name."""
         words, options, name = list(re.finditer(r"\S+", text)), dict[str, list[str]](), list[re.Match[str]]()
         while words:
             word = words.pop(0)
@@ -51,7 +52,7 @@ class Map(NamedTuple):
         return cls(text[name[0].start() : name[-1].end()] if name else "", options)
 
     def placement(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """What multiplies texture coordinates (-s), and what is added to them then (-o)."""
+        """The factor of texture coordinates (-s), and the offset that is added afterwards (-o)."""
         return self._pair("-s", 1.0), self._pair("-o", 0.0)
 
     def _pair(self, option: str, default: float) -> tuple[float, float]:
@@ -61,19 +62,19 @@ class Map(NamedTuple):
 
 
 class Statement(NamedTuple):
-    """One line of a material, with its keyword as it is written there."""
+    """One line of a material, with its keyword as written."""
 
     line: int
     keyword: str
     text: str
 
     def numbers(self, *counts: int) -> list[float]:
-        """Its numbers.
+        """The numbers of the statement.
 
         Raises
         ------
         SceneError
-            They are not as many as one of `counts`, or something else.
+            If their count is none of `counts`, or if there is something else.
         """
         numbers = floats(uncommented(self.text).split(), self.line)
         if len(numbers) not in counts:
@@ -84,16 +85,16 @@ class Statement(NamedTuple):
 
 @dataclass(frozen=True)
 class Definition:
-    """A material as an MTL file has it.
+    """A material as in an MTL file.
 
     Parameters
     ----------
     library : Path
         The file.
     statements : dict of Statement
-        By their keywords in lower case.
+        By keyword in lower case.
     maps : dict of Map
-        Those of the statements that name an image.
+        The images of those statements that have one.
     """
 
     library: Path
@@ -101,7 +102,7 @@ class Definition:
     maps: dict[str, Map] = field(default_factory=dict)
 
     def add(self, statement: Statement) -> None:
-        """Add a statement, in place of one that said the same before."""
+        """Add a statement; it replaces an earlier one with the same keyword."""
         keyword = statement.keyword.lower()
         self.statements[keyword] = statement
         if keyword.startswith("map_"):
@@ -109,9 +110,9 @@ class Definition:
 
 
 def read_library(path: Path) -> dict[str, Definition]:
-    """The materials of an MTL file by name; of several with the same name the first."""
+    """The materials of an MTL file by name; if several have the same name, the first one."""
     definitions: dict[str, Definition] = {}
-    current = Definition(path)  # what stands before the first material belongs to none
+    current = Definition(path)  # statements before the first material belong to none
     for line, keyword, rest in statements(read_text(path)):
         if keyword.lower() == "newmtl":
             current = Definition(path)

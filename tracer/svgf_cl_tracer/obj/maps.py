@@ -1,4 +1,4 @@
-"""The images that materials name, and where on a surface they lie."""
+"""The images of materials, and their placement on a surface."""
 
 from __future__ import annotations
 
@@ -16,27 +16,27 @@ from svgf_cl_tracer.textures import Image
 from .library import Definition, Map
 from .text import is_number, uncommented
 
-# Images that lie on the surface texel by texel; of others the mean counts. The place of the first is that of all.
+# Images that are used texel by texel; of other images the mean is used. All images have the placement of the first one.
 PLACED = ("map_kd", "map_ke", "map_d")
 
-# What -imfchan calls the channels of an image; it may ask for opacity (m) or brightness (l) too.
+# The names of an image's channels in -imfchan, which may also ask for opacity (m) or brightness (l).
 CHANNELS = {"r": 0, "g": 1, "b": 2}
 HALF = 128
 
-# Options that make no difference here, and with which words others make none.
+# Options that have no effect here, and options that have none with these words.
 NEUTRAL = {"-s", "-o", "-bm", "-boost", "-blendu", "-blendv", "-cc", "-imfchan", "-texres", "-type"}
 NEUTRAL_VALUES: dict[str, list[object]] = {"-clamp": ["off"], "-mm": [0.0, 1.0], "-t": [0.0, 0.0, 0.0]}
 
 
 class Maps:
-    """The images of one model, each decoded once.
+    """The images of one model; each is decoded once.
 
     Parameters
     ----------
     root : Path
-        The model's folder; nothing outside it is read.
+        The model's folder; no file outside it is read.
     losses : Losses
-        Where it is noted what is not shown as the files have it.
+        Collects what is shown differently from the files.
     """
 
     def __init__(self, root: Path, losses: Losses) -> None:
@@ -45,17 +45,17 @@ class Maps:
         self._masked: dict[tuple[int, int, str], Image] = {}
 
     def pixels(self, definition: Definition, keyword: str) -> Image | None:
-        """The image that a statement of a material names; None where it names none that is there.
+        """The image of a material's statement; None if there is no statement or no such image.
 
         Raises
         ------
         SceneError
-            It cannot be decoded.
+            If it cannot be decoded.
         """
         if keyword not in definition.maps:
             return None
         named = definition.maps[keyword]
-        names = (named.name, uncommented(named.name))  # a name may hold a #; or a comment stands behind it
+        names = (named.name, uncommented(named.name))  # a # may be part of the name or begin a comment
         path = next(filter(None, (found_inside(self._root, name, definition.library.parent) for name in names)), None)
         if path is None:
             self._losses.add("images that are not in its folder or below, shown without", shown(named.name))
@@ -64,7 +64,7 @@ class Maps:
         return self._images.pixels(str(path), path.read_bytes)
 
     def base(self, definition: Definition) -> tuple[Image | None, bool]:
-        """The image of a material's colour (map_Kd), and whether its fourth channel is an opacity (map_d)."""
+        """The image of a material's colour (map_Kd), and whether its fourth channel is opacity (map_d)."""
         colour, mask = self.pixels(definition, "map_kd"), self.pixels(definition, "map_d")
         if mask is None:
             if colour is not None and colour.shape[2] == 4 and (colour[..., 3] < HALF).any():
@@ -78,7 +78,7 @@ class Maps:
         return self._masked[key], True
 
     def placed(self, definition: Definition, uv: NDArray[np.floating]) -> NDArray[np.floating]:
-        """Texture coordinates (..., 2) on a surface where the material scales (-s) and shifts (-o) its images."""
+        """Texture coordinates (..., 2), scaled (-s) and shifted (-o) as the material defines."""
         scale, offset = _placement(definition)
         return uv * scale + offset
 
@@ -102,7 +102,7 @@ def _placement(definition: Definition) -> tuple[tuple[float, float], tuple[float
 
 
 def _opacity(mask: Image, channel: str) -> NDArray[np.uint8]:
-    """The opacity (h, w) that an image stands for: its own where it has one, else its brightness."""
+    """The opacity (h, w) of a mask: its opacity channel if it has one, otherwise its brightness."""
     if channel in CHANNELS:
         return mask[..., CHANNELS[channel]]
     if channel != "l" and mask.shape[2] == 4 and mask[..., 3].min() < 255:
@@ -112,7 +112,7 @@ def _opacity(mask: Image, channel: str) -> NDArray[np.uint8]:
 
 
 def _masked(colour: Image | None, opacity: NDArray[np.uint8]) -> Image:
-    """`colour` (white where there is none) with `opacity` as its fourth channel, in as many pixels as `colour` has."""
+    """`colour` (white if there is none) with `opacity` as its fourth channel, at the resolution of `colour`."""
     if colour is None:
         colour = np.broadcast_to(np.uint8(255), (*opacity.shape, 3))
     height, width = colour.shape[:2]

@@ -1,4 +1,4 @@
-"""Materials of an OBJ file as the tracer's."""
+"""Converts materials of an OBJ file to the tracer's."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ from .text import clean, is_number, uncommented
 
 WHITE = (1.0, 1.0, 1.0)
 
-# Below, a surface is not there, or has a hole.
+# Opacity below which a surface is invisible or has a hole.
 CUTOFF = 0.5
 
-# Of a surface with a roughness, as glTF has it.
+# The refractive index of a surface with a roughness, as in glTF.
 IOR = 1.5
 
 GLOSS = ("pr", "pm", "map_pr", "map_pm")
 READ = {"kd", "ke", "d", "tr", "map_kd", "map_ke", "map_d", *GLOSS}
-# Nothing in the picture depends on these alone: light that comes from nowhere, the sharpness of gloss that is not read.
+# Statements that do not affect the picture on their own: ambient light, and the sharpness of gloss that is not read.
 INVISIBLE = {"ka", "map_ka", "ni", "ns", "map_ns", "sharpness", "map_aat"}
-# Models of illumination that are glass; others say what the colours say too.
+# Illumination models for glass; for other models the colours are enough.
 GLASS = {"4", "6", "7", "9"}
 
 
 class Materials:
-    """The materials of one file, each made once.
+    """The materials of one file; each is made once.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class Materials:
     definitions : mapping of Definition
         By name.
     losses : Losses
-        Where it is noted what is not shown as the files have it.
+        Collects what is shown differently from the files.
     """
 
     def __init__(self, root: Path, definitions: Mapping[str, Definition], losses: Losses) -> None:
@@ -53,14 +53,14 @@ class Materials:
         self._made: dict[str, Material | None] = {}
 
     def of(self, name: str, *, coloured: bool) -> tuple[str, Material | None]:
-        """The material that a file calls `name`, on a surface that may have colours of its own; None for one not seen.
+        """The material `name`, for a surface that may have its own colours; None for an invisible material.
 
-        Its own name comes first: in the file a comment may stand behind it.
+        The complete name is tried first, because a comment may follow it in the file.
 
         Raises
         ------
         SceneError
-            Its definition or an image makes no sense.
+            If its definition or an image is invalid.
         """
         if name not in self._definitions:
             name = clean(uncommented(name))
@@ -77,7 +77,7 @@ class Materials:
         return name, self._made[name]
 
     def placed(self, name: str, uv: NDArray[np.floating] | None) -> NDArray[np.floating] | None:
-        """Texture coordinates (..., 2), NaN where there are none, as the material called `name` wants them."""
+        """Texture coordinates (..., 2), NaN where there are none, as placed by the material `name`."""
         material = self._made.get(name)
         if material is None:
             return None if uv is None else np.nan_to_num(uv)
@@ -119,14 +119,14 @@ class Materials:
         return red, green, blue
 
     def _share(self, definition: Definition, keyword: str, default: float) -> float:
-        """A number in 0..1 and the mean of its image, multiplied; `default` where there is neither."""
+        """The product of a number in 0..1 and the mean of its image; `default` if there is neither."""
         statement, image = definition.statements.get(keyword), self._maps.pixels(definition, f"map_{keyword}")
         share = statement.numbers(1)[0] if statement else default if image is None else 1.0
         return share * _mean(image)
 
 
 def _opacity(statements: Mapping[str, Statement]) -> float:
-    """What `d` says, or its opposite `Tr`; 1 where neither is there."""
+    """The opacity from `d` or from its opposite `Tr`; 1 if there is neither."""
     if "d" in statements:
         words = uncommented(statements["d"].text).split()
         return statements["d"]._replace(text=" ".join(word for word in words if word != "-halo")).numbers(1)[0]
@@ -144,5 +144,5 @@ def _is_lost(statement: Statement) -> bool:
         return bool(GLASS.intersection(words))
     if keyword in READ | INVISIBLE:
         return "-halo" in words
-    neutral = 1.0 if keyword == "tf" else 0.0  # light that is let through, or thrown back
+    neutral = 1.0 if keyword == "tf" else 0.0  # light that is let through, or light that is reflected
     return not all(is_number(word) and float(word) == neutral for word in words)

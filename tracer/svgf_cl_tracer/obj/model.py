@@ -1,4 +1,4 @@
-"""All of an OBJ file together."""
+"""Loads an OBJ file."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .surface import Surface
 from .text import NONE, Indices, Lines, by_keyword, read_text, uncommented
 
 READ = {"v", "vt", "vn", "f", "o", "g", "s", "usemtl", "mtllib"}
-# Parts of curves and surfaces whose own lines are named, hints to renderers, levels of detail.
+# Lines inside curves and surfaces (whose first lines give a warning), hints for renderers, levels of detail.
 INVISIBLE = {
     *("vp", "cstype", "deg", "bmat", "step", "parm", "trim", "hole", "scrv", "sp", "end", "con", "ctech", "stech"),
     *("mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj"),
@@ -31,24 +31,24 @@ INVISIBLE = {
 
 
 def load_obj(path: Path, to_world: Float64) -> Model:
-    """Load an .obj file; a warning each names what is not shown as the file has it.
+    """Load an .obj file; warnings say what is shown differently from the file.
 
     Parameters
     ----------
     path : Path
     to_world : (4, 4) float
-        From the file's frame into the world's.
+        From the file's frame into the world.
 
     Returns
     -------
     Model
-        An object for each material of each object (`o`; `g` in a file without any). Its nodes are the file's name and
-        the object's.
+        An object for each material of each object (`o`, or `g` in a file without `o`). Its nodes have the names of the
+        file and of the object.
 
     Raises
     ------
     SceneError
-        A line makes no sense, or an image cannot be decoded.
+        If a line is invalid, or an image cannot be decoded.
     """
     losses, lines = Losses(), by_keyword(read_text(path))
     for keyword in lines:
@@ -68,7 +68,7 @@ def load_obj(path: Path, to_world: Float64) -> Model:
 
 
 def _parts(lines: Mapping[str, Lines], at: Indices) -> Iterator[tuple[str, str, Indices]]:
-    """Name of the object, of the material, and the triangles that have both, by the lines `at` which these stand."""
+    """The object's name, the material's name, and the triangles that have both; triangles are on the lines `at`."""
     objects, object_of = lines.get("o", lines.get("g", NONE)).named(at)
     materials, material_of = lines.get("usemtl", NONE).named(at)
     keys = object_of * len(materials) + material_of
@@ -79,10 +79,10 @@ def _parts(lines: Mapping[str, Lines], at: Indices) -> Iterator[tuple[str, str, 
 
 
 def _definitions(path: Path, libraries: Lines, losses: Losses) -> dict[str, Definition]:
-    """The materials of all libraries that a file names; of several with the same name the first."""
+    """The materials of all libraries of a file; if several have the same name, the first one."""
     definitions: dict[str, Definition] = {}
     for text in libraries.texts:
-        # A name may hold spaces; or several names are on a line.
+        # A line has one name, which may contain spaces, or several names.
         names = [text] if found_inside(path.parent, text, path.parent) else uncommented(text).split()
         for name in names:
             library = found_inside(path.parent, name, path.parent)

@@ -1,4 +1,4 @@
-"""Polygons in space as triangles."""
+"""Divides polygons in space into triangles."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from .text import Indices
 
 
 def triangulate(points: Float64, counts: Indices) -> tuple[Indices, Indices]:
-    """Triangles of polygons that need be neither convex nor quite flat.
+    """Triangles of polygons that may be concave and slightly bent.
 
     Parameters
     ----------
     points : (P, 3) float
-        The corners of one polygon behind those of another.
+        The corners of all polygons, one polygon after the other.
     counts : (N,) int
-        How many corners each polygon has, >= 3.
+        The number of corners of each polygon, >= 3.
 
     Returns
     -------
     (T, 3) int
-        Indices of the corners of each triangle, which turn as its polygon does; triangles of a polygon that touches
-        itself or is crossed may be fewer than its corners less two.
+        Indices of the corners of each triangle, in the orientation of its polygon. A polygon that touches or crosses
+        itself may give fewer triangles than its number of corners minus two.
     (T,) int
-        The polygon of each, ascending.
+        The polygon of each triangle, ascending.
     """
     starts = np.cumsum(counts) - counts
     triangles, polygons = [np.zeros((0, 3), np.int64)], [np.zeros(0, np.int64)]
@@ -48,13 +48,13 @@ def triangulate(points: Float64, counts: Indices) -> tuple[Indices, Indices]:
 
 
 def _fan(corners: Indices) -> Indices:
-    """Triangles from the first of each row of corners to every edge: (rows * (corners - 2), 3)."""
+    """Triangles from the first corner of each row to every edge: (rows * (corners - 2), 3)."""
     first = np.broadcast_to(corners[:, :1], (len(corners), corners.shape[1] - 2))
     return np.stack([first, corners[:, 1:-1], corners[:, 2:]], axis=-1).reshape(-1, 3)
 
 
 def _fan_fits(points: Float64) -> NDArray[np.bool_]:
-    """Whether all triangles of a fan over polygons (N, C, 3) face the polygon's side: then they cover it, and once."""
+    """Whether all triangles of a fan over polygons (N, C, 3) face the polygon's side, so that they cover it once."""
     edges = points[:, 1:] - points[:, :1]
     areas = np.cross(edges[:, :-1], edges[:, 1:])
     return np.asarray((np.einsum("nti,ni->nt", areas, areas.sum(1)) >= 0.0).all(1))
@@ -64,7 +64,7 @@ def _cut(points: Float64) -> Indices:
     """Triangles (T, 3) of one polygon (C, 3) by ear clipping in its plane."""
     edges = points[1:] - points[0]
     normal = np.cross(edges[:-1], edges[1:]).sum(0)
-    # The plane of two axes, on which its shadow is largest; turned so that the polygon runs counter-clockwise.
+    # Project to the two axes on which the polygon is largest; flip it if needed, so that it is counter-clockwise.
     axis = int(np.abs(normal).argmax())
     flat = np.roll(points - points[0], -axis, axis=1)[:, 1:]
     if normal[axis] < 0.0:

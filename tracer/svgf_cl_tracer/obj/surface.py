@@ -1,4 +1,4 @@
-"""What the faces of an OBJ file are made of: triangles, and the values at their corners."""
+"""The triangles of an OBJ file, and the values at their corners."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .faces import ABSENT, Faces
 from .polygons import triangulate
 from .text import NONE, Indices, Lines
 
-FLAT: tuple[list[str], ...] = ([], ["0"], ["off"])  # what `s` says where there is no smoothing group
+FLAT: tuple[list[str], ...] = ([], ["0"], ["off"])  # the words after `s` that mean that there is no smoothing group
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,9 +33,9 @@ class Surface:
     colours : (V, 3) float or None
         Linear, 0..1.
     corners : (T, 3, 3) int
-        Triangle, corner, indices of its position, texture coordinates and normal; `ABSENT` where it has none.
+        Triangle, corner, indices of position, texture coordinates and normal; `ABSENT` if there is none.
     lines : (T,) int
-        On which line of the file the face of each is, ascending.
+        The line of the file with the face of each triangle, ascending.
     """
 
     positions: Float64
@@ -52,7 +52,7 @@ class Surface:
         Raises
         ------
         SceneError
-            A line makes no sense.
+            If a line is invalid.
         """
         vertices = lines.get("v", NONE).table(3, 6)
         normals, named = _directions(lines.get("vn", NONE).table(3, 3, finite=False))
@@ -69,7 +69,7 @@ class Surface:
         return flat.smoothed(lines.get("s", NONE))
 
     def smoothed(self, groups: Lines) -> Surface:
-        """The surface with normals in smoothing groups, the mean of the faces around, where the file has none."""
+        """The surface, with missing normals computed in smoothing groups as the mean of the faces around."""
         names, group = groups.named(self.lines)
         smooth = np.array([name.split()[:1] not in FLAT for name in names])
         chosen = np.flatnonzero(smooth[group] & (self.corners[..., 2] == ABSENT).any(1))
@@ -83,10 +83,10 @@ class Surface:
         return Surface(self.positions, self.uv, normals, self.colours, corners, self.lines)
 
     def mesh(self, chosen: Indices) -> Mesh:
-        """The triangles chosen, none of which share a corner; texture coordinates are NaN where a corner has none."""
+        """The chosen triangles as a mesh without shared corners; missing texture coordinates are NaN."""
         position, texture, normal = self.corners[chosen].reshape(-1, 3).T
         vertices, normals = self.positions[position], _values(self.normals, normal)
-        if normals is not None:  # a triangle without any among others with some is flat
+        if normals is not None:  # a triangle without normals, among others that have them, is flat
             flat = unit(_areas(vertices.reshape(-1, 3, 3))).repeat(3, axis=0)
             normals = np.where(np.isnan(normals), flat, normals)
         colours = None if self.colours is None else self.colours[position]
@@ -95,9 +95,9 @@ class Surface:
 
 
 def _directions(vectors: Float64) -> tuple[Float64, Indices]:
-    """Unit vectors, and the index of each by the number of its line; `ABSENT` where the line holds no direction.
+    """Unit vectors, and the index of each by the number of its line; `ABSENT` if the line has no direction.
 
-    Many programs write zeros or NaN for the normals of what has no area.
+    Many programs write zeros or NaN as normals of faces without area.
     """
     with np.errstate(invalid="ignore", over="ignore"):
         length = np.linalg.norm(vectors, axis=1)
@@ -108,18 +108,18 @@ def _directions(vectors: Float64) -> tuple[Float64, Indices]:
 
 
 def _colours(values: Float64) -> Float64 | None:
-    """Linear colours for those behind positions, sRGB as in Blender and MeshLab; white where there are none."""
+    """Linear colours, from sRGB values after positions, as Blender and MeshLab write them; white where missing."""
     given = np.asarray(np.isfinite(values).all(1))
     if not given.any():
         return None
     colours = np.where(given[:, None], values, 1.0)
-    if colours.max() > 1.0:  # some programs count to 255
+    if colours.max() > 1.0:  # some programs write 0..255
         colours[given] /= 255.0
     return srgb_to_linear(np.clip(colours, 0.0, 1.0))
 
 
 def _values(values: Float64, index: Indices) -> Float64 | None:
-    """The rows of `values` at each index, NaN where it is absent; None where all are."""
+    """The rows of `values` at each index, NaN for absent ones; None if all are absent."""
     absent = index == ABSENT
     if absent.all():
         return None
@@ -129,12 +129,15 @@ def _values(values: Float64, index: Indices) -> Float64 | None:
 
 
 def _areas(corners: Float64) -> Float64:
-    """Normals (n, 3) of triangles, twice as long as their areas."""
+    """Normals (n, 3) of triangles; their lengths are twice the areas."""
     return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
 
 
 def _weighted_normals(corners: Float64) -> Float64:
-    """Normals (n, 3, 3) at corners of triangles, as long as their angles: however a face is cut, it counts alike."""
+    """Normals (n, 3, 3) at corners of triangles.
+
+    Their lengths are the angles, so the division of a face does not matter.
+    """
     after, before = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
     normals = np.cross(after, before)
     angles = np.arctan2(np.linalg.norm(normals, axis=2), (after * before).sum(2))

@@ -1,4 +1,4 @@
-"""The text that OBJ and MTL files are made of: lines, each a keyword and what follows it."""
+"""Reads the text of OBJ and MTL files: lines with a keyword and its arguments."""
 
 from __future__ import annotations
 
@@ -28,24 +28,24 @@ BYTE_ORDER_MARKS = {
     codecs.BOM_UTF16_BE: "utf-16",
 }
 
-# How the lines begin that come by the million, and their keyword.
+# The beginnings of lines of which files have millions, with their keywords.
 COMMON = {"v ": "v", "v\t": "v", "vt": "vt", "vn": "vn", "f ": "f", "f\t": "f"}
 
 
 @dataclass
 class Lines:
-    """Lines with the same keyword: their numbers in the file, from 1 and ascending, and what follows the keyword."""
+    """Lines with the same keyword: their numbers in the file, from 1 and ascending, and the text after the keyword."""
 
     numbers: list[int] = field(default_factory=list)
     texts: list[str] = field(default_factory=list)
 
     def table(self, least: int, most: int, *, finite: bool = True) -> Float64:
-        """The first numbers of each line (lines, most), NaN where a line has fewer.
+        """The first numbers of each line (lines, most); NaN if a line has fewer.
 
         Raises
         ------
         SceneError
-            A line has fewer than `least` numbers, something else, or what is not `finite`.
+            If a line has fewer than `least` numbers, or something else, or (with `finite`) numbers that are not finite.
         """
         text, _, counts = self.words()
         try:
@@ -67,7 +67,7 @@ class Lines:
         return table[:, :most]
 
     def words(self) -> tuple[bytes, Indices, Indices]:
-        """All lines as one text without comments, where in it each word begins, and how many words each line has."""
+        """All lines as one text without comments, the start of each word, and the number of words of each line."""
         joined = "\n".join([*self.texts, ""])
         text = re.sub("#.*", "", joined).encode("ascii", "replace")
         codes = np.frombuffer(text, np.uint8)
@@ -77,11 +77,14 @@ class Lines:
         return text, starts, counts
 
     def in_force(self, lines: Indices) -> Indices:
-        """How many of these lines stand above each of `lines`, numbers in the file: the last of them counts there."""
+        """For each of `lines` (numbers in the file), how many of these lines are above it.
+
+        The last of those applies there.
+        """
         return np.searchsorted(self.numbers, lines)
 
     def named(self, lines: Indices) -> tuple[list[str], Indices]:
-        """The names on these lines, each once behind an empty one, and the number of the one in force at `lines`."""
+        """All names on these lines, each once after an empty name, and the index of the one that holds at `lines`."""
         numbers = {"": 0}
         number = np.array([0, *(numbers.setdefault(clean(text), len(numbers)) for text in self.texts)])
         return list(numbers), number[self.in_force(lines)]
@@ -91,14 +94,14 @@ NONE = Lines()
 
 
 def read_text(path: Path) -> list[str]:
-    """The lines of a file: UTF-8 or UTF-16 where it says so or is such, else Latin-1.
+    """The lines of a file: UTF-8 or UTF-16, if it is marked or valid as such, otherwise Latin-1.
 
-    A backslash at the end of a line joins the next one to it, in whose place an empty one is left.
+    A backslash at the end of a line joins it with the next line, which is replaced by an empty one.
 
     Raises
     ------
     SceneError
-        It is no text.
+        If it is not text.
     """
     data = path.read_bytes()
     marked = next((encoding for mark, encoding in BYTE_ORDER_MARKS.items() if data.startswith(mark)), None)
@@ -125,7 +128,7 @@ def _joined(lines: list[str]) -> Iterator[str]:
 
 
 def statements(lines: list[str], first: int = 1) -> Iterator[tuple[int, str, str]]:
-    """Number, counted from `first`, keyword and what follows it, of each line that is neither empty nor a comment."""
+    """The number (counted from `first`), the keyword and the rest of each line that is not empty and not a comment."""
     for number, line in enumerate(lines, first):
         keyword, *rest = line.split(None, 1) or ("#",)
         if not keyword.startswith("#"):
@@ -151,12 +154,12 @@ def by_keyword(lines: list[str]) -> dict[str, Lines]:
 
 
 def parsed(text: bytes, count: int, kind: type[Any]) -> NDArray[Any]:
-    """The `count` numbers of some kind that a text consists of; `ValueError` where it consists of something else."""
+    """The `count` numbers of type `kind` in a text; `ValueError` if the text has anything else."""
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)
         try:
             numbers = np.fromstring(text, kind, sep=" ") if count else np.zeros(0, kind)
-        except DeprecationWarning as error:  # how NumPy calls what is no number
+        except DeprecationWarning as error:  # NumPy's warning for words that are not numbers
             raise ValueError(str(error)) from error
     if len(numbers) != count:
         raise ValueError(f"expected {count} numbers, found {len(numbers)}")
@@ -164,17 +167,17 @@ def parsed(text: bytes, count: int, kind: type[Any]) -> NDArray[Any]:
 
 
 def uncommented(text: str) -> str:
-    """`text` up to a comment. Names may hold a #: this is for numbers."""
+    """`text` without a comment. Only for numbers, because names may contain a #."""
     return text[: text.index("#")] if "#" in text else text
 
 
 def clean(name: str) -> str:
-    """The name of a material or an object as it is compared: its words with one space between."""
+    """The name of a material or object in the form in which names are compared: words separated by one space."""
     return " ".join(name.split())
 
 
 def floats(words: list[str], line: int) -> list[float]:
-    """The numbers that `words` of that line are; `SceneError` where one is none."""
+    """The numbers in `words` of a line; `SceneError` if a word is not a number."""
     for word in words:
         if not is_number(word):
             raise SceneError(f"line {line}: expected numbers, found {shown(word)}")
@@ -182,7 +185,7 @@ def floats(words: list[str], line: int) -> list[float]:
 
 
 def is_number(word: str) -> bool:
-    """Whether `word` is one, be it infinite or none."""
+    """Whether `word` is a number, which may be infinite or NaN."""
     try:
         float(word)
     except ValueError:
