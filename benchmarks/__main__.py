@@ -1,6 +1,6 @@
 """Everything that ``make bench`` measures, in one report.
 
-The suite, the race against OIDN, the tracer against raw Embree, and speed against error.
+It runs the benchmark suite, compares speed with OIDN and the tracer with raw Embree, and measures speed against error.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from svgf_cl.filters import DEFAULT, Settings
 from svgf_cl.io.atomic import output_folder
 
 RACE_ROUNDS = 20
-VARIANT_ROUNDS = 10  # half as many as by itself: all has to be done in ten minutes
+VARIANT_ROUNDS = 10  # half as many as in its own command, because everything has to finish in ten minutes
 TRACED, TRACER_ROUNDS = "cornell", 5
 
 
@@ -41,11 +41,11 @@ def everything(
         typer.Option("-o", "--output", metavar="DIR", help="Gets report.html, summary.png, results.json and more."),
     ] = Path("out/bench"),
 ) -> None:
-    """Measure everything and write one report; a first one, without speed against error, is there earlier."""
+    """Measure everything and write one report; a first report, without speed against error, is written earlier."""
     require_flip()
     folder = output_folder(output)
-    times, race = raced()  # first, for it tells OIDN's memory from what the process grows by
-    suite = Suite(re.compile(""), Settings()).run(progress_bar)  # whose passes have bars
+    times, race = raced()  # first, because OIDN's memory is measured by the growth of the process
+    suite = Suite(re.compile(""), Settings()).run(progress_bar)  # the bars are about passes of this filter
     traced = tracing.measure(TRACED, USUAL_SHAPE, TRACER_ROUNDS, progress_bar)
     run = replace(suite, results=(*suite.results, *times, *traced))
     sections = [race, picture.section(traced)]
@@ -65,7 +65,10 @@ def everything(
 
 
 def raced() -> tuple[Sequence[Result], Section]:
-    """The race's times, and its section of the report; without OIDN, the reason why there is none."""
+    """The times of the comparison with OIDN, and its section of the report.
+
+    Without OIDN, the section has the reason.
+    """
     try:
         oidn.require_oidn()
     except SvgfError as error:

@@ -1,4 +1,4 @@
-"""Every kernel against the float64 oracle, on every OpenCL implementation: printed, and written to a file if given.
+"""Compares every kernel with the float64 oracle on every OpenCL implementation; prints the page, and writes a file.
 
 python -m benchmarks.accuracy_page [FILE]
 python -m benchmarks.accuracy_page --here [--brief]   # the figures of the default device, as JSON; or a few of them
@@ -35,7 +35,7 @@ from svgf_cl_tracer import Shot, builtin_scene, render_sequence
 SHAPE = (36, 64)
 FRAMES = 4
 ALL_KERNELS = (Settings(taa=True), Kalman(taa=True, standard_error=True))
-# Of up to 1089 taps a pixel, which on a simulator take a second each.
+# These kernels read up to 1089 taps per pixel, which takes a second per pixel on a simulator.
 WINDOWS = (Sbf(), Lbf())
 SMALL, FEW = (18, 32), 2
 WHOLE = (Kalman(), Settings())
@@ -87,7 +87,7 @@ They are relative to the picture's mean:
 
 
 def random_frames(shape: tuple[int, int], count: int, seed: int = 1) -> Iterator[Frame]:
-    """Frames that no renderer would make: nothing fits anything else."""
+    """Frames of random values, which no renderer would make: the fields do not match each other."""
     rng = np.random.default_rng(seed)
     for _ in range(count):
         direct, indirect, emission = (rng.exponential(1.0, (*shape, 3)).astype(np.float32) for _ in range(3))
@@ -106,7 +106,7 @@ def random_frames(shape: tuple[int, int], count: int, seed: int = 1) -> Iterator
 
 
 def measured(*, brief: bool = False) -> dict[str, Any]:
-    """The figures of this process's default device; brief ones are of the default filter on small frames alone."""
+    """The figures of the default device; with `brief`, only those of the default filter on small frames."""
     queue = devices.default_queue()
     kernels: dict[str, list[Deviation]] = {}
     whole = WHOLE[:1] if brief else WHOLE
@@ -121,7 +121,7 @@ def measured(*, brief: bool = False) -> dict[str, Any]:
 
 
 def all_cases() -> Iterator[tuple[list[Frame], Filter]]:
-    """The sequences and filters that every kernel is measured by."""
+    """The sequences and filters with which every kernel is measured."""
     traced = render_sequence(Shot(builtin_scene("cornell"), SHAPE, FRAMES))
     yield from itertools.product((list(traced), list(random_frames(SHAPE, FRAMES))), ALL_KERNELS)
     yield from itertools.product((list(random_frames(SMALL, FEW)),), WINDOWS)
@@ -133,7 +133,7 @@ def small_cases() -> Iterator[tuple[list[Frame], Filter]]:
 
 
 def measured_apart(environment: Environment) -> dict[str, Any]:
-    """`measured` of a process in another environment."""
+    """Run `measured` in a process with another environment."""
     command = [sys.executable, "-m", "benchmarks.accuracy_page", HERE]
     child = subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=True)
     figures: dict[str, Any] = json.loads(child.stdout.splitlines()[-1])
@@ -141,7 +141,7 @@ def measured_apart(environment: Environment) -> dict[str, Any]:
 
 
 def kernel_table(found: dict[str, dict[str, Any]]) -> Table:
-    """Each kernel's largest errors on these implementations, by name."""
+    """The largest errors of each kernel on these implementations, by name."""
     kernels = next(iter(found.values()))["kernels"]
     rows = [
         (kernel, name, *(f"{figures['kernels'][kernel][column]:.1e}" for column in COLUMNS))
@@ -153,7 +153,7 @@ def kernel_table(found: dict[str, dict[str, Any]]) -> Table:
 
 
 def whole_table(found: dict[str, dict[str, Any]]) -> Table:
-    """The whole filters' errors on these implementations, by name."""
+    """The errors of whole filters on these implementations, by name."""
     rows = [
         (filter_, name, f"{rms:.1e}", f"{largest:.1e}", figures["device"])
         for name, figures in found.items()
@@ -164,7 +164,7 @@ def whole_table(found: dict[str, dict[str, Any]]) -> Table:
 
 
 def page(found: dict[str, dict[str, Any]]) -> str:
-    """The page on these implementations, by name."""
+    """The page for these implementations, by name."""
     return "\n".join(
         [
             INTRODUCTION,
@@ -180,7 +180,7 @@ def page(found: dict[str, dict[str, Any]]) -> str:
 
 
 def main() -> None:
-    """Measure, here or on every implementation."""
+    """Measure on the default device, or on every implementation."""
     if sys.argv[1:2] == [HERE]:
         print(json.dumps(measured(brief=BRIEF in sys.argv)))
         return

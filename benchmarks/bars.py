@@ -1,4 +1,4 @@
-"""The bars that filter and tracer are held to, and what a run says of each."""
+"""The limits ("bars") that filter and tracer should keep, and whether a run keeps them."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ USUAL = {"height": USUAL_SHAPE[0], "width": USUAL_SHAPE[1], "variant": ""}
 
 @dataclass(frozen=True)
 class Bar:
-    """A limit to what is measured.
+    """A limit for a measured figure.
 
     Parameters
     ----------
     what : str
     limit : float
     unit : str
-        Behind the figures.
+        Written after the figures.
     measure : callable
-        The figure, from a device's results; `LookupError` where they lack what it takes.
+        Computes the figure from a device's results; `LookupError` if results are missing.
     least : bool
-        The figure has to be at least the limit; else at most.
+        True: the figure has to be at least the limit; False: at most.
     """
 
     what: str
@@ -53,7 +53,7 @@ class Bar:
 
 
 def find(results: Results, **facts: Any) -> Result:
-    """The result with these facts (or of this clock); `LookupError` where there is none."""
+    """The result with these facts (or with this clock); `LookupError` if there is none."""
     for result in results:
         known = result.facts | {"clock": result.clock}
         if all(known.get(name) == value for name, value in facts.items()):
@@ -62,7 +62,7 @@ def find(results: Results, **facts: Any) -> Result:
 
 
 def times_faster(rival: str, settings: str) -> Callable[[Results], float]:
-    """Median over the rounds of a race: how many times as long the rival took as a whole call."""
+    """Median over the rounds of how many times as long the rival took as svgf_cl, for a whole call."""
 
     def measure(results: Results) -> float:
         slow, fast = (find(results, race=name, clock=HOST).seconds for name in (rival, f"svgf_cl {settings}"))
@@ -72,7 +72,7 @@ def times_faster(rival: str, settings: str) -> Callable[[Results], float]:
 
 
 def roofline(row: str) -> Callable[[Results], float]:
-    """Percent of a row's roofline."""
+    """The share of its roofline that a row reaches, in percent."""
 
     def measure(results: Results) -> float:
         share = find(results, row=row, clock=EVENT, **USUAL).roofline
@@ -83,13 +83,13 @@ def roofline(row: str) -> Callable[[Results], float]:
 
 
 def second_signal(results: Results) -> float:
-    """Percent that a second signal adds to a frame's time."""
+    """The time that a second signal adds to a frame, in percent."""
     one, two = (find(results, row="frame", variant=f"signals{count}", clock=EVENT).median for count in (1, 2))
     return 100 * (two / one - 1)
 
 
 def nonlinearity(results: Results) -> float:
-    """Percent by which the time per pixel differs at most from that at the usual size, in larger frames."""
+    """The largest difference of the time per pixel in larger frames from that at the usual size, in percent."""
     usual = find(results, row="frame", clock=EVENT, **USUAL)
     frames = [r for r in results if (r.facts.get("row"), r.facts.get("variant"), r.clock) == ("frame", "", EVENT)]
     larger = [per_pixel(r) for r in frames if r.facts["height"] > usual.facts["height"]]
@@ -99,44 +99,44 @@ def nonlinearity(results: Results) -> float:
 
 
 def per_pixel(result: Result) -> float:
-    """Seconds."""
+    """Seconds per pixel."""
     return result.median / float(result.facts["width"] * result.facts["height"])
 
 
 def memory(results: Results) -> float:
-    """MB held by the denoiser of one signal at 1920x1080."""
+    """MB of device memory of a denoiser with one signal at 1920x1080."""
     return float(find(results, row="frame", width=1920, height=1080, variant="", clock=EVENT).facts["planes"]) / 1e6
 
 
 def start(kind: str) -> Callable[[Results], float]:
-    """Seconds to the first frame."""
+    """Seconds until the first frame is done."""
     return lambda results: find(results, row=f"start {kind}").median
 
 
 def enqueue(results: Results) -> float:
-    """Milliseconds that a frame costs the calling thread."""
+    """Milliseconds of the calling thread for a frame."""
     return 1e3 * find(results, row="enqueue", clock=HOST, **USUAL).median
 
 
 def over_embree(results: Results) -> float:
-    """Median over the rounds: how many times as long the tracer took for a frame as raw Embree for the same rays."""
+    """Median over the rounds of how many times as long a frame takes as its rays take in raw Embree."""
     frame, rays = (find(results, row=f"tracer {what}", clock=HOST, **USUAL) for what in ("frame", "embree"))
     return float(np.median(np.divide(frame.seconds, rays.seconds)))
 
 
 def tracer_memory(results: Results) -> float:
-    """GB that a new process held at most."""
+    """The peak memory of a new process, in GB."""
     return float(find(results, row="tracer start load", width=1920, height=1080).facts["peak"]) / 1e9
 
 
 def over_svgf(results: Results) -> float:
-    """Median over the rounds of a race: how many times as long the default filter took as SVGF with 3x3 taps."""
+    """Median over the rounds of how many times as long the default filter took as SVGF with 3x3 taps."""
     default, svgf = (find(results, race=f"svgf_cl {name}", clock=HOST).seconds for name in ("default", "SVGF"))
     return float(np.median(np.divide(default, svgf)))
 
 
 def race_bar(kind: str, settings: str, rival: str, factor: float) -> Bar:
-    """How many times as fast as Open Image Denoise svgf_cl with these settings has to be."""
+    """The bar for the speed of svgf_cl with these settings, compared with Open Image Denoise."""
     measure = times_faster(f"OIDN {rival}", settings)
     return Bar(f"{kind}: {settings} faster than OIDN {rival}", factor, " times", measure, least=True)
 
@@ -162,7 +162,7 @@ BARS = (
 
 
 def against_pocl(pocl: Results) -> Bar:
-    """Intel's runtime has to be as fast as PoCL, whose results are given."""
+    """The bar that Intel's runtime is as fast as PoCL, for these results of PoCL."""
 
     def measure(results: Results) -> float:
         intel, other = (find(each, row="frame", clock=EVENT, **USUAL).median for each in (results, pocl))
@@ -172,7 +172,7 @@ def against_pocl(pocl: Results) -> Bar:
 
 
 def bar_table(results: Results, platforms: Mapping[str, str]) -> Table:
-    """A row for each bar and device of which `results` hold what it takes; `platforms` by the device's selector."""
+    """A row for each bar and device for which `results` has the figures; `platforms` has names by device selector."""
     found = [(name, [r for r in results if r.device == selector]) for selector, name in platforms.items()]
     held = [(bar, *each) for bar in BARS for each in found]
     by_name = dict(found)
@@ -183,7 +183,7 @@ def bar_table(results: Results, platforms: Mapping[str, str]) -> Table:
 
 
 def judged(bar: Bar, platform: str, results: Results) -> Iterator[tuple[str, ...]]:
-    """A bar's row, if it can be judged."""
+    """The row of a bar, if the figures exist."""
     try:
         figure = bar.measure(results)
     except LookupError:

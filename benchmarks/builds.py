@@ -1,4 +1,4 @@
-"""How kernels are built: the macros that settings, frames and tunings give each source file, every combination once."""
+"""The builds of kernels: source files with the macros of settings, frames and tunings, each combination once."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from svgf_cl.settings import defaults
 
 @dataclass(frozen=True)
 class Case:
-    """A filter with its settings, the frames that it is given, and how its kernels are cut into vectors."""
+    """A filter with its settings, the fields of the frames, and the tuning."""
 
     chosen: Filter
     inputs: Inputs
@@ -29,7 +29,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Build:
-    """A source file and the compiler's options for it, and in words the first case that needs it so."""
+    """A source file and its compiler options, and a description of the first case that needs this build."""
 
     source: str
     options: tuple[str, ...]
@@ -42,7 +42,7 @@ class Build:
 
 
 def builds(cases: Iterable[Case]) -> list[Build]:
-    """Everything that is compiled for these cases, each once, and the sources that no filter chooses."""
+    """All builds for these cases, each once, and the builds that do not depend on a filter."""
     found: dict[tuple[str, tuple[str, ...]], Build] = {}
     for build in (*fixed(), *(build for case in cases for build in builds_of(case))):
         found.setdefault((build.source, build.options), build)
@@ -50,13 +50,13 @@ def builds(cases: Iterable[Case]) -> list[Build]:
 
 
 def fixed() -> Iterator[Build]:
-    """The sources that are the same for all filters and frames."""
+    """The builds that are the same for all filters and frames."""
     for source in programs.WITHOUT_HEADERS:
         yield Build(source, programs.options_of(source, {}), "all")
 
 
 def builds_of(case: Case) -> Iterator[Build]:
-    """Every source file of a case's pipeline."""
+    """The builds of all source files in a case's pipeline."""
     pipeline = case.chosen.pipeline(case.inputs)
     for source in dict.fromkeys(entry.source for entry in pipeline.passes):
         yield Build(source, programs.options_of(source, case.tuning.defines | pipeline.defines), str(case))

@@ -1,4 +1,4 @@
-"""Writes docs/checking_inputs.md: which of twenty mistakes `svgf-cl check` finds, in which scene."""
+"""Writes docs/checking_inputs.md: which of twenty mistakes `svgf-cl check` finds in each scene."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from svgf_cl_tracer import BUILTIN
 
 TARGET = Path("docs/checking_inputs.md")
 SHAPE = (180, 320)
-FRAMES = 7  # of which the first only leads to the second
+FRAMES = 7  # the first frame is only the previous one of the second
 DEVELOPED = (ROOM, "cornell", "mirror", "contrast")
 FOUND, ALSO, UNTOLD, MISSED = "yes", "yes, and more", "-", "**no**"
 
@@ -113,7 +113,7 @@ def outcomes(good: Sequence[Taken]) -> dict[str, str]:
 
 
 def outcome(mistake: Mistake, report: Report) -> str:
-    """Whether a mistake was found, and found alone; if not, whether the report says that it was not checked."""
+    """Whether the mistake was found, and no other; if not found, whether the report says that it was not checked."""
     if mistake.named_in(report):
         return FOUND if all(finding.field == mistake.field for finding in report.findings) else ALSO
     return UNTOLD if any(unknown.topic == mistake.check.topic for unknown in report.unknown) else MISSED

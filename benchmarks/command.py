@@ -1,4 +1,4 @@
-"""Runs a benchmark's command line: what goes wrong ends in one line, as that of ``svgf-cl`` does."""
+"""Runs the command line of a benchmark; errors end in one line, as those of ``svgf-cl`` do."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from svgf_cl.cli import leave
 
 
 def run(command: Callable[..., None], module: str) -> None:
-    """Run `command`, of this module, on the process's arguments; what a user can get wrong ends in exit code 2."""
+    """Run `command`, of this module, with the process's arguments; a user's error ends in exit code 2."""
     app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
     app.command()(command)
     leave(app, sys.argv[1:], module.rpartition(".")[2], f"python -m {module}")

@@ -1,8 +1,9 @@
-"""From files to files: how long a frame takes to be read, filtered and written, one after the other and at once.
+"""Times frames from file to file: reading, filtering and writing, one after the other and overlapped.
 
-``svgf-cl denoise`` reads and writes frames while others are filtered. The shot is the built-in room, written as our own
-files (17 channels of 32 bits) and as Blender's (the passes that `svgf_cl` reads and as many that it does not, 16 and 32
-bits), zip compression. "at once" is the whole of `svgf_cl.job.run`, files that are there already being none.
+``svgf-cl denoise`` reads and writes frames while others are filtered. The shot is the built-in room. It is written as
+files of svgf_cl (17 channels of 32 bits) and as files of Blender (16 and 32 bits, with as many passes that `svgf_cl`
+does not read as passes that it reads), with zip compression. "at once" is the whole of `svgf_cl.job.run`, with no files
+from an earlier run.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ from svgf_cl.job import run as run_job
 from svgf_cl.lights import Denoised
 from svgf_cl.shot_denoiser import Method, ShotDenoiser
 
-UNREAD = 24  # channels of 16 bits that pass through, as Cryptomatte and other passes do
+UNREAD = 24  # channels of 16 bits that pass through unread, such as Cryptomatte's
 
 
 def main(
@@ -41,7 +42,7 @@ def main(
     height: Annotated[int, typer.Option(min=16)] = 720,
     frames: Annotated[int, typer.Option(min=4, help="Frames of the shot.")] = 24,
 ) -> None:
-    """Time the parts of a frame's way from file to file, and the whole of it."""
+    """Time the parts of a frame's way from file to file, and the whole way."""
     kinds: dict[str, Callable[[Path, Frame], Mapping[str, Plane]]] = {"ours": channels_of, "Blender": blender}
     rows = []
     for name, channels in kinds.items():
@@ -55,7 +56,7 @@ def main(
 
 
 def blender(path: Path, frame: Frame) -> dict[str, Plane]:
-    """A frame's channels as Blender calls them, with direct and indirect light as passes of their own."""
+    """A frame's channels with Blender's names; direct and indirect light are separate passes."""
     albedo = np.maximum(frame.albedo, 0.02)
     pictures: dict[str, Any] = {
         "Combined": frame.color,
@@ -88,7 +89,7 @@ def written(
 
 
 def timed(paths: list[Path], out: Path) -> tuple[float, ...]:
-    """Seconds a frame to read, to filter, to write, for all three one after the other, and for all at once."""
+    """Seconds per frame for reading, filtering, writing, all three one after the other, and all at once."""
     out.mkdir()
     method, shot = Method(DEFAULT()), Shot(paths)
     denoiser = ShotDenoiser(shot.shape, method, len(shot.reading.lights))
@@ -105,14 +106,14 @@ def timed(paths: list[Path], out: Path) -> tuple[float, ...]:
 
 
 def warmed(shot: Shot, denoiser: ShotDenoiser) -> np.ndarray:
-    """Build the kernels by a first frame, which counts as nothing."""
+    """Build the kernels with a first frame, which is not timed."""
     source = shot.read(0)
     denoiser.denoise(source.frame, source.lights)
     return np.zeros(3)
 
 
 def step(shot: Shot, denoiser: ShotDenoiser, index: int, target: Path) -> np.ndarray:
-    """Seconds to read, to filter and to write a frame."""
+    """Seconds for reading, filtering and writing a frame."""
     times = [time.perf_counter()]
     source: ShotFrame = shot.read(index)
     times.append(time.perf_counter())

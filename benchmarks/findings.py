@@ -1,4 +1,4 @@
-"""What a run found, as tables, files and a section of the benchmark's report."""
+"""The results of a run as tables, files and a section of the benchmark's report."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ LEGEND = (
 
 @dataclass(frozen=True)
 class Findings:
-    """A whole run.
+    """The results of a whole run.
 
     Parameters
     ----------
     results : sequence of Result
     noise : dict of str to Quality
-        Of each footage's truth, by name: one half against the other.
+        The noise of each footage's reference, by name: one half compared with the other.
     about : dict of str to str
-        What was measured, on what, when.
+        What was measured, on which device, and when.
     """
 
     results: Sequence[Result]
@@ -43,25 +43,25 @@ class Findings:
 
     @property
     def tables(self) -> list[Table]:
-        """One for each kind of error."""
+        """One table for each kind of error."""
         truths = [self._table(f"error against the truth, {name}", quality_columns(name)) for name in self.noise]
         return [self._table("error against the oracle", [oracle_column()]), *truths]
 
     @property
     def remarks(self) -> list[str]:
-        """What has to be known about the figures."""
+        """Notes that explain the figures."""
         facts = (f"{key}: {value}" for key, value in self.about.items())
         return [*LEGEND, *(noise_remark(*pair) for pair in self.noise.items()), *facts]
 
     @property
     def page(self) -> str:
-        """Everything in one table, then the remarks, in markdown."""
+        """One table with everything, then the notes, in Markdown."""
         columns = [oracle_column(), *(column for name in self.noise for column in quality_columns(name))]
         return markdown(self._table(TITLE, columns)) + "\n" + "".join(f"- {remark}\n" for remark in self.remarks)
 
     @cached_property
     def plot(self) -> bytes:
-        """A PNG."""
+        """The plot as PNG."""
         return plot(self.results, list(self.noise), f"{TITLE}, {self.about['size']}")
 
     def write(self, folder: Path) -> None:
@@ -73,7 +73,7 @@ class Findings:
 
     @property
     def section(self) -> Section:
-        """Of the benchmark's report."""
+        """The section of the benchmark's report."""
         return Section(TITLE, inline_png(self.plot, TITLE), self.tables, self.remarks)
 
     def _table(self, title: str, columns: Sequence[Column]) -> Table:
@@ -81,7 +81,7 @@ class Findings:
 
 
 def noise_remark(name: str, halves: Quality) -> str:
-    """How far the truth's two halves are apart; the truth is their mean."""
+    """The difference between the reference's two halves; the reference is their mean."""
     return (
         f"noise of the truth, {name}: its halves differ by PSNR {halves.psnr:.1f} dB, relMSE {halves.relmse:.4f}, "
         f"FLIP {halves.flip:.4f}, temporal {halves.temporal:.5f}; their mean is 6 dB closer to what they converge to"

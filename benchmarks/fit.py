@@ -1,12 +1,12 @@
-"""Fits each filter's own settings to training sequences, and says what that gains on others.
+"""Fits each filter's own settings to training sequences, and measures the gain on other sequences.
 
 A fair comparison gives every filter its best settings. They are fitted to random rooms (`benchmarks.training.rooms`)
-and judged on scenes that the fit has not seen. What is made small is the mean over sequences of
+and measured on scenes that were not used for the fit. The fit minimises the mean over the sequences of
 
 ``log2(root mean square error) + log2(temporal error)``
 
-both of what is shown and without the truth's noise (`svgf_cl.compare.halves`): one bit is half the error, or half the
-flicker. Nelder and Mead's search (SciPy) moves the binary logarithms of the settings.
+Both are of the picture as shown, without the truth's noise (`svgf_cl.compare.halves`). One bit is half the error, or
+half the flicker. The search is Nelder and Mead's (SciPy), over the binary logarithms of the settings.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from svgf_cl.settings import Range, domains
 from svgf_cl_tracer import Shot
 from svgf_cl_tracer.cli.footage import Traced, open_footage
 
-# The settings of a filter's own that decide what it averages. Accumulation over time is the same for all.
+# The filters' own settings for averaging. Accumulation over time is the same for all filters.
 FITTED: Mapping[str, tuple[str, ...]] = {
     "svgf": ("sigma_luminance", "sigma_depth", "sigma_normal"),
     "eaw": ("sigma_color", "sigma_depth", "sigma_normal"),
@@ -48,17 +48,17 @@ FITTED: Mapping[str, tuple[str, ...]] = {
     "kalman": ("sigma_luminance", "change_threshold", "sigma_depth", "sigma_normal"),
 }
 HELD_OUT = ("cornell", "glossy", "swing", "switch", "fireflies", "static")
-JUDGED = 6  # of the last frames
+JUDGED = 6  # last frames
 FRAMES = 14
 FIRST_STEP = 0.7  # octaves
-LEAST = 1e-12  # of a square: nothing is better than that
+LEAST = 1e-12  # the least square error that counts: smaller ones are not better
 
 Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class RoomFootage(Traced):
-    """A random room; its number stands for the scene's name."""
+    """A random room; its name is its number."""
 
     @property
     def name(self) -> str:
@@ -67,7 +67,7 @@ class RoomFootage(Traced):
 
     @cached_property
     def shot(self) -> Shot:
-        """The room along its own camera path."""
+        """The room with its own camera path."""
         return Shot(room(int(self.scene)), self.shape, len(self.numbers))
 
 
@@ -80,7 +80,7 @@ class Clip:
     name : str
     frames : sequence of Frame
     truths : mapping of int to two of (H, W, 3)
-        Halves of the truth of the judged frames as shown, by number from 0.
+        Halves of the truth of the measured frames as shown, by number from 0.
     """
 
     name: str
@@ -94,7 +94,7 @@ class Clip:
         return cls(footage.name, list(footage.frames()), truths)
 
     def badness(self, settings: Filter) -> float:
-        """log2 of the error plus log2 of the temporal error that a filter leaves."""
+        """log2 of the error plus log2 of the temporal error of a filter."""
         errors, changes = [], []
         before: tuple[Linear, Pair] | None = None
         with Denoiser(self.frames[0].shape, settings=settings) as denoiser:
@@ -161,7 +161,7 @@ def badness(settings: Filter, clips: Sequence[Clip]) -> float:
 
 
 def fitted(usual: Filter, names: Sequence[str], clips: Sequence[Clip], steps: int) -> Filter:
-    """The filter with the settings `names` that are best on the sequences; it is never worse there than `usual`."""
+    """The filter with the best settings `names` for these clips; it is never worse there than `usual`."""
     from scipy.optimize import minimize
 
     begin = np.log2([getattr(usual, name) for name in names])
@@ -179,7 +179,7 @@ def fitted(usual: Filter, names: Sequence[str], clips: Sequence[Clip], steps: in
 
 
 def moved(usual: Filter, names: Sequence[str], values: Vector) -> Filter:
-    """The filter with settings of these binary logarithms, as far as their ranges allow."""
+    """The filter with settings of these binary logarithms, clamped to their ranges."""
     ranges = domains(type(usual))
     wanted = {}
     for name, value in zip(names, values, strict=True):

@@ -1,4 +1,4 @@
-"""Noisy sequences and what they converge to."""
+"""Noisy sequences and their references."""
 
 from __future__ import annotations
 
@@ -15,19 +15,20 @@ from svgf_cl_tracer.references import chunks
 
 @dataclass(frozen=True)
 class Footage:
-    """A camera moving through a scene at 1 sample per pixel, and the truth about part of its last frames.
+    """A camera that moves through a scene at 1 sample per pixel, and the truth of a part of its last frames.
 
-    At least two frames in a row, for the temporal error; the last, because history is longest there. Of these a band of
-    rows, so that a large picture's truth can be had in minutes. Each truth is rendered as two independent halves: what
-    they differ by is its own noise.
+    At least two consecutive frames have a truth, for the temporal error. They are the last frames, because history is
+    longest there. Only a band of rows has a truth, so that the truth of a large picture renders in minutes. Each truth
+    is rendered as two independent halves, whose difference is its own noise.
 
     Parameters
     ----------
     name : str
-        What the truth is the light of.
+        The light of the truth.
     jitter : bool
-        True: rays go through another point of the pixel in every frame, and the truth is the mean over the pixel's
-        area. False: all rays, the truth's too, go through the pixel's centre, so that there is nothing to antialias.
+        True: rays pass through a different point of the pixel in every frame, and the truth is the mean over the
+        pixel's area. False: all rays, including those of the truth, pass through the pixel's centre, so nothing is
+        aliased.
     scene : str
         Name of a built-in scene, a folder with a scene.json, or a glTF, GLB or OBJ file.
     cameras : tuple of Camera
@@ -37,11 +38,11 @@ class Footage:
     shape : (int, int)
         (height, width) in pixels.
     band : (float, float)
-        Where the judged rows begin and end, in picture heights. In the Cornell box these cross walls, a deep shadow,
-        the ball, the ring, both blocks, the lattice and the tiles.
+        The first and last of the measured rows, in picture heights. In the Cornell box these rows cross walls, a deep
+        shadow, the ball, the ring, both blocks, the lattice and the tiles.
     frames : int, >= 2
     last : int, 2..frames
-        How many of the last frames have a truth.
+        The number of last frames that have a truth.
     spp : int, a multiple of 2 * CHUNK
         Samples per pixel of the truth.
     """
@@ -64,13 +65,13 @@ class Footage:
 
     @property
     def rows(self) -> tuple[int, int]:
-        """First judged row, and the one after the last."""
+        """The first measured row, and the one after the last."""
         first, end = (round(share * self.shape[0]) for share in self.band)
         return first, end
 
     @property
     def chunks(self) -> int:
-        """How often `halves` will call `advance`."""
+        """The number of times that `halves` calls `advance`."""
         return len(self.judged) * 2 * chunks(self.spp // 2)
 
     def noisy(self) -> Iterator[Frame]:
@@ -78,7 +79,7 @@ class Footage:
         return svgf_cl_tracer.render_sequence(self._shot, jitter=self.jitter)
 
     def halves(self, advance: Callable[[], None]) -> list[tuple[Linear, Linear]]:
-        """Two independent halves of the truth of each judged frame, as far as an earlier run has not rendered them."""
+        """Two independent halves of the truth of each measured frame; halves from an earlier run are reused."""
         return [(self._half(number, 0, advance), self._half(number, 1, advance)) for number in self.judged]
 
     @cached_property

@@ -1,6 +1,6 @@
-"""The OpenCL implementations that svgf_cl is tested on, and how to give a process one of them alone.
+"""The OpenCL implementations on which svgf_cl is tested, and environments that give a process only one of them.
 
-As a program: names those that do not work, each with the reason; exit code 1 if there are any.
+As a program it lists the implementations that do not work, with reasons; the exit code is then 1.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from pathlib import Path
 from svgf_cl.device import devices, icd_files
 from svgf_cl.device.drivers import INTEL
 
-# By the name in tables: the platform's own name, what the OpenCL loader is to load, what else the driver asks for.
-# Oclgrind's package registers it nowhere; `scripts/set_up implementations` installs them all.
+# By the name in tables: the platform's name, the files that the OpenCL loader must load, and other variables for the
+# driver. Oclgrind's package does not register it; `scripts/set_up implementations` installs them all.
 CPU_IMPLEMENTATIONS = {
     "PoCL": (devices.POCL, "libpocl.so.2", {}),
     "Intel": (INTEL.platform, str(INTEL.find()), {}),
@@ -27,17 +27,17 @@ Environment = dict[str, str]
 
 
 def environments(folder: Path) -> dict[str, Environment]:
-    """The environment of a process in which one implementation is the default, by the name of the implementation.
+    """Environments for processes in which one implementation is the default, by the name of the implementation.
 
     Parameters
     ----------
     folder : pathlib.Path
-        Where to write what the OpenCL loader reads; it must last as long as those processes.
+        A folder for files of the OpenCL loader; it must exist as long as those processes run.
 
     Returns
     -------
     dict of str to dict
-        `CPU_IMPLEMENTATIONS`, whether they are installed or not, and every GPU that works.
+        `CPU_IMPLEMENTATIONS`, installed or not, and every GPU that works.
     """
     gpus = {
         f"{report.device} ({report.platform})": {**os.environ, devices.VARIABLE: report.selector}
@@ -52,12 +52,12 @@ def _alone(name: str, folder: Path) -> Environment:
     vendors = folder / name
     vendors.mkdir()
     (vendors / "only.icd").write_text(f"{library}\n")
-    # With the slash: without it some loaders take the value for a library.
+    # With the slash, because some loaders would take the value for a library without it.
     return {**os.environ, **needs, icd_files.VARIABLE: f"{vendors}/", devices.VARIABLE: platform}
 
 
 def main() -> None:
-    """Ask every implementation for a device that works."""
+    """Check which implementations have a device that works."""
     works = True
     with tempfile.TemporaryDirectory() as folder:
         for name, environment in environments(Path(folder)).items():

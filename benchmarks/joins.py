@@ -1,10 +1,10 @@
-"""What is seen where a chunk of a shot begins that was denoised apart, by the frames that it filtered before.
+"""Measures the join between two chunks of a shot that were denoised separately, by the length of the warm-up.
 
-Of each scene one long shot is denoised whole, and its last frame again, each time from another frame on. Three things
-are told of that last frame, at which a chunk would begin: its difference from the whole shot's; that difference as a
-share of how much the whole shot changes from the frame before to this one, rms of both as shown; and how far both are
-from the path-traced truth. A join is a change of the picture that a film has more: if it is a small part of what
-changes anyway, nobody sees it.
+For each scene, one long shot is denoised as a whole. Its last frame, at which a chunk would begin, is also denoised
+after warm-ups of different lengths. Three things are measured in that last frame: its difference from the frame of the
+whole shot; that difference as a share of the change from the previous frame, both rms as shown; and the error of both
+compared with the path-traced truth. A join is an additional change of the picture. If it is a small part of the change
+that happens anyway, nobody sees it.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from svgf_cl.io.display import Linear, display
 from svgf_cl_tracer.cli.footage import open_footage
 
 WARM_UPS = (0, 2, 4, 8, 16, 24, 32)
-SCENES = ("cornell", "static", "swing", "switch", "glossy")  # camera moves; nothing; things; lamps; mirrors
+SCENES = ("cornell", "static", "swing", "switch", "glossy")  # moving camera; nothing; objects; lamps; mirrors
 COLUMNS = ("scene", "warm-up", "difference, PSNR", "FLIP", "of a frame's change, %", "truth, PSNR", "whole shot")
 
 
@@ -60,7 +60,7 @@ def joins(
 
 
 def rows_of(footage: Footage, advance: Callable[[], None]) -> Iterator[list[str]]:
-    """The rows of a scene, one for each warm-up."""
+    """The rows of a scene, one for each length of the warm-up."""
     ((first, second),) = footage.truths(advance).values()
     truth = display((first + second) / 2)
     frames = list(footage.frames())
@@ -82,13 +82,13 @@ def rows_of(footage: Footage, advance: Callable[[], None]) -> Iterator[list[str]
 
 
 def last_two(frames: Sequence[Frame]) -> Sequence[Linear]:
-    """The last pictures that come of some frames, as shown; one where there is one."""
+    """The last two pictures of these frames, as shown; one if there is only one."""
     with Denoiser(frames[0].shape, settings=DEFAULT()) as denoiser:
         return [display(denoiser.denoise(frame)) for frame in frames][-2:]
 
 
 def rms(one: Linear, other: Linear) -> float:
-    """Root of the mean squared difference of two pictures."""
+    """Root mean square of the difference of two pictures."""
     return float(np.sqrt(np.mean(np.square(one - other))))
 
 

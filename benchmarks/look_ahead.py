@@ -1,8 +1,8 @@
-"""What it gains to look ahead: the filter forward alone, backward alone, and both averaged, beside Open Image Denoise.
+"""Measures the gain of looking ahead: the filter forward, backward, and both averaged, beside Open Image Denoise.
 
-Every frame of a scene is judged, the first and the last as well: there one of the two runs knows little. The frames are
-those of `svgf-cl compare --no-jitter`, and so are the measures. Times are of the whole call for a frame, on the host,
-the mean over the frames; kernels were built before.
+Every frame of a scene is measured, including the first and the last, where one of the runs has little history. The
+frames and measures are those of `svgf-cl compare --no-jitter`. Times are of whole calls for a frame, on the host, as
+the mean over the frames; kernels are built beforehand.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ Pictures = Callable[[Sequence[Frame]], Iterable[Linear]]
 
 @dataclass(frozen=True)
 class Row:
-    """One way to make the pictures of a scene: how good they are, and what a frame takes, in ms."""
+    """One way to make a scene's pictures: its quality, and the time of a frame in ms."""
 
     scene: str
     way: str
@@ -56,7 +56,7 @@ class Row:
 
     @property
     def spelled(self) -> list[str]:
-        """As a row of the table."""
+        """The row of the table."""
         figures = [spelled(each, value(self.findings, each.key)) for each in COLUMNS]
         return [self.scene, self.way, *figures, f"{self.milliseconds:.0f}"]
 
@@ -92,7 +92,7 @@ def measured(
 
 
 def judged(footage: Footage, advance: Callable[[], None], output: Path | None) -> Iterator[Row]:
-    """A row for each way to make a scene's pictures; `output` gets those of the middle frame."""
+    """A row for each way to make a scene's pictures; the pictures of the middle frame are written to `output`."""
     truths = footage.truths(advance)
     frames = list(footage.frames())
     middle = footage.numbers[len(frames) // 2]
@@ -110,7 +110,7 @@ def judged(footage: Footage, advance: Callable[[], None], output: Path | None) -
 
 
 def found(pictures: Sequence[Linear], frames: Sequence[Frame], truths: Mapping[int, Pair]) -> Findings:
-    """How good the pictures of all frames are."""
+    """The quality of the pictures of all frames."""
     judge = Judge()
     seen = [(frame, truths[number]) for number, frame in enumerate(frames)]
     for picture, (frame, halves), earlier in zip(pictures, seen, [None, *seen], strict=False):
@@ -119,7 +119,7 @@ def found(pictures: Sequence[Linear], frames: Sequence[Frame], truths: Mapping[i
 
 
 def ways(shape: Shape) -> dict[str, Pictures]:
-    """How pictures are made, by name."""
+    """The ways to make pictures, by name."""
     forward, backward, rival = Denoiser(shape), Denoiser(shape), FrameByFrame(shape)
 
     def ahead(count: int | None) -> Pictures:
@@ -135,13 +135,13 @@ def ways(shape: Shape) -> dict[str, Pictures]:
 
 
 def filtered(denoiser: Denoiser, frames: Iterable[Frame]) -> Iterator[Linear]:
-    """One run."""
+    """The pictures of one run."""
     denoiser.reset()
     return map(denoiser.denoise, frames)
 
 
 def turned_round(frames: Sequence[Frame]) -> Iterator[Frame]:
-    """The same frames backward in time."""
+    """The same frames, backward in time."""
     yield frames[-1]
     for later, frame in pairwise(reversed(frames)):
         yield replace(frame, motion=motion_to_next(frame, later))

@@ -1,4 +1,4 @@
-"""What each variant costs, and how far off it is."""
+"""Measures the time and the error of each variant."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from svgf_cl.frame import Shape
 from svgf_cl.io.display import Linear, display
 from svgf_cl.io.synthetic import PERIOD, room_frames
 
-# Frames a variant computes at each of its turns: the first finds caches full of another variant's planes.
+# Frames that a variant computes in each turn; the first one finds caches full of another variant's data.
 UNTIMED, TIMED = 1, 2
 
 Advance = Callable[[], None]
@@ -27,7 +27,7 @@ Advance = Callable[[], None]
 
 @dataclass(frozen=True)
 class Quality:
-    """Errors of a sequence's two judged frames, as `svgf_cl.compare.metrics` defines them; means over the two."""
+    """Errors of the two measured frames of a sequence, as defined in `svgf_cl.compare.metrics`; means over the two."""
 
     psnr: float
     relmse: float
@@ -37,7 +37,7 @@ class Quality:
 
 @dataclass(frozen=True)
 class Times:
-    """Milliseconds a frame, by `paired_medians`: `device` sums all passes, `frame` is the whole call with copies."""
+    """Milliseconds per frame, by `paired_medians`: `device` is the sum of all passes, `frame` the whole call."""
 
     device: float
     frame: float
@@ -45,16 +45,16 @@ class Times:
 
 @dataclass(frozen=True)
 class Result:
-    """Everything measured of one variant.
+    """All measurements of one variant.
 
     Parameters
     ----------
     variant : Variant
     times : Times
     oracle_rms, oracle_largest : float
-        Difference from the float64 oracle that does the same, relative to the picture's mean.
+        Difference from the float64 oracle with the same settings, relative to the picture's mean.
     quality : dict of str to Quality
-        Against path-traced truth, by the footage's name.
+        Compared with the path-traced truth, by the footage's name.
     """
 
     variant: Variant
@@ -66,7 +66,7 @@ class Result:
 
 @dataclass
 class Runner:
-    """A variant's denoiser at work on frames that come round and round."""
+    """A variant's denoiser, which filters the same frames again and again."""
 
     den: Denoiser
     frames: Iterator[Frame]
@@ -76,19 +76,19 @@ class Runner:
 
     @classmethod
     def of(cls, variant: Variant, frames: Sequence[Frame]) -> Runner:
-        """A runner on `frames`, warm."""
+        """A runner for `frames`, after a warm-up."""
         shape = frames[0].shape
         runner = cls(Denoiser(shape, settings=variant.settings), cycle(frames), np.empty((*shape, 3), np.float32))
         runner.run(WARM_UP)
         return runner
 
     def run(self, frames: int) -> None:
-        """Denoise so many frames, untimed."""
+        """Denoise `frames` frames without timing them."""
         for _ in range(frames):
             self.den.denoise(next(self.frames), out=self.out)
 
     def time(self, frames: int) -> None:
-        """Denoise so many frames and note the milliseconds of each."""
+        """Denoise `frames` frames, and record the milliseconds of each."""
         for _ in range(frames):
             begin = time.perf_counter()
             self.run(1)
@@ -97,7 +97,7 @@ class Runner:
 
 
 def interleaved_times(variants: Sequence[Variant], shape: Shape, rounds: int, advance: Advance) -> list[Times]:
-    """Time the variants by turns, so that whatever else the machine does falls on all alike.
+    """Time the variants in turns, so that other work on the machine affects all of them alike.
 
     Parameters
     ----------
@@ -121,14 +121,14 @@ def interleaved_times(variants: Sequence[Variant], shape: Shape, rounds: int, ad
 
 
 def paired_medians(samples: Sequence[Sequence[float]]) -> list[float]:
-    """Medians of times taken by turns, steady where the machine is not.
+    """Medians of times that were taken in turns; they are reliable even on a busy machine.
 
-    That of the first as it is; that of any other as the first's times the median ratio of the two in one turn, which
-    what else the machine does changes little.
+    The first is a plain median. Each other one is the first median times the median ratio of both times of a turn,
+    which other work on the machine changes little.
 
     Parameters
     ----------
-    samples : (V, N) of float
+    The times of each variant, turn by turn.
         For each variant, its times turn by turn.
     """
     times = np.asarray(samples)
@@ -139,14 +139,14 @@ def paired_medians(samples: Sequence[Sequence[float]]) -> list[float]:
 def qualities(
     variants: Sequence[Variant], footage: Footage, advance: Advance
 ) -> tuple[dict[Variant, Quality], Quality]:
-    """Denoise a footage with every variant it suits, and hold each against the truth.
+    """Denoise a footage with every variant that suits it, and compare the pictures with the truth.
 
     Returns
     -------
     found : dict of Variant to Quality
-        Of the variants that are `suited`.
+        For those variants that are `suited`.
     noise : Quality
-        One half of the truth against the other. Their mean, which the variants are held against, is 6 dB closer.
+        One half of the truth compared with the other. Their mean, with which variants are compared, is 6 dB better.
     """
     halves = footage.halves(advance)
     truth = [0.5 * (first + second) for first, second in halves]
@@ -156,7 +156,7 @@ def qualities(
 
 
 def judged_pictures(variants: Sequence[Variant], footage: Footage, advance: Advance) -> dict[Variant, list[Linear]]:
-    """The judged rows of the judged frames, as each variant denoises them; `advance` is called after each frame."""
+    """The measured rows of the measured frames, denoised by each variant; `advance` is called after each frame."""
     denoisers = {variant: Denoiser(footage.shape, settings=variant.settings) for variant in variants}
     pictures: dict[Variant, list[Linear]] = {variant: [] for variant in variants}
     for number, split in enumerate(footage.noisy()):
@@ -170,7 +170,7 @@ def judged_pictures(variants: Sequence[Variant], footage: Footage, advance: Adva
 
 
 def quality(pictures: Sequence[Linear], truth: Sequence[Linear]) -> Quality:
-    """Measure two consecutive linear pictures against the truth about them."""
+    """Compare two consecutive linear pictures with the truth."""
     pairs = list(zip(pictures, truth, strict=True))
     shown = [(display(picture), display(wanted)) for picture, wanted in pairs]
     (earlier, earlier_truth), (later, later_truth) = shown
@@ -183,7 +183,7 @@ def quality(pictures: Sequence[Linear], truth: Sequence[Linear]) -> Quality:
 
 
 def suited(variants: Sequence[Variant], footage: Footage) -> list[Variant]:
-    """Those variants that a footage can judge: temporal antialiasing needs jitter."""
+    """Those variants that a footage can measure: temporal antialiasing needs jitter."""
     return [variant for variant in variants if footage.jitter or not variant.settings.taa]
 
 
@@ -197,7 +197,7 @@ def measure(
     results : list of Result
         In the order of `variants`.
     noise : dict of str to Quality
-        Of each footage's truth, by name, as in `qualities`.
+        The noise of each footage's truth, by name, as in `qualities`.
     """
     judged = {footage.name: qualities(variants, footage, advance) for footage in footages}
     times = interleaved_times(variants, shape, rounds, advance)
@@ -211,6 +211,6 @@ def measure(
 
 
 def steps(variants: Sequence[Variant], footages: Sequence[Footage], rounds: int) -> int:
-    """How often `measure` will call `advance`."""
+    """The number of times that `measure` calls `advance`."""
     judging = sum(footage.chunks + footage.frames for footage in footages)
     return judging + len(variants) * (rounds + 1)

@@ -1,4 +1,4 @@
-"""Good sequences, and twenty mistakes that users make in handing them over: what `svgf-cl check` is measured by."""
+"""Good sequences, and twenty mistakes that users make in their frames, to measure `svgf-cl check` with."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from svgf_cl_tracer.cli.scenes import open_scene
 from svgf_cl_tracer.sampling import pixel_jitter
 
 ROOM = "room"
-NEAR, FAR = 0.05, 200.0  # planes of a graphics API's camera, in scene units
+NEAR, FAR = 0.05, 200.0  # clipping planes of a graphics API's camera, in scene units
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class Taken:
-    """A frame, and what its renderer knows of the camera beside it.
+    """A frame, and the renderer's additional knowledge of the camera.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Taken:
 
 
 def good_sequence(scene: str, shape: Shape, count: int) -> list[Taken]:
-    """Frames as they should be, from the middle of a shot: of the room, of a built-in scene or of a scene file."""
+    """Frames without mistakes from the middle of a shot, of the room, of a built-in scene or of a scene file."""
     if scene == ROOM:
         frames = list(room.room_frames(shape, count))
         return [
@@ -62,7 +62,7 @@ def good_sequence(scene: str, shape: Shape, count: int) -> list[Taken]:
 
 
 def orbit(camera: Camera) -> CameraPath:
-    """A camera that goes some way around what it looks at, and nearer to it."""
+    """A camera that moves around the point it looks at, and nearer to it."""
     towards = np.subtract(camera.look_at, camera.position)
     right, up, _ = camera.basis() * np.linalg.norm(towards)
     start, end = (camera.position + side * (0.3 * right + 0.1 * up + 0.2 * towards) for side in (-0.5, 0.5))
@@ -70,7 +70,7 @@ def orbit(camera: Camera) -> CameraPath:
 
 
 def taken(shot: Shot, number: int) -> Taken:
-    """A frame of a shot with the fields that every renderer has, so that no sum of parts tells of the whole."""
+    """A frame of a shot with only those fields that every renderer has, without parts that must add up to the whole."""
     everything = render_frame(shot, number)
     fields = ("color", "normal", "depth", "motion", "albedo", "id", "emission")
     camera = shot.camera(number)
@@ -80,16 +80,16 @@ def taken(shot: Shot, number: int) -> Taken:
 
 @dataclass(frozen=True)
 class Mistake:
-    """A mistake, and how a check should call it.
+    """A mistake, and the finding that a check should report.
 
     Parameters
     ----------
     check : Check
-        The one that should find it.
+        The check that should find it.
     field, what : str
-        Of the finding; `what` is how it begins.
+        Field and text of the finding; `what` is the beginning of the text.
     make : callable
-        From a frame before and a frame to what is handed over in place of the latter: values of fields.
+        Makes the wrong values of fields of a frame, from the previous frame and the frame.
     """
 
     check: Check
@@ -98,11 +98,11 @@ class Mistake:
     make: Callable[[Taken, Taken], dict[str, Any]]
 
     def made_in(self, good: Sequence[Taken]) -> list[Frame]:
-        """The sequence with the mistake; its first frame only leads to the second."""
+        """The sequence with the mistake; its first frame is only the previous one of the second."""
         return [self._made(before, now) for before, now in pairwise(good)]
 
     def named_in(self, report: Report) -> bool:
-        """Whether a report calls it by its name."""
+        """Whether a report has exactly this finding."""
         return any(found.field == self.field and found.what.startswith(self.what) for found in report.findings)
 
     def _made(self, before: Taken, now: Taken) -> Frame:
@@ -112,34 +112,34 @@ class Mistake:
 
 
 def in_units(before: Taken, now: Taken) -> dict[str, Any]:
-    """Motion as a share of the image."""
+    """Motion as a share of the image's size."""
     height, width = now.frame.shape
     return {"motion": now.frame.motion / (width, height, 1)}
 
 
 def in_ndc(before: Taken, now: Taken) -> dict[str, Any]:
-    """Motion in a graphics API's normalised device coordinates, whose y points up."""
+    """Motion in normalised device coordinates of a graphics API, where y points up."""
     height, width = now.frame.shape
     return {"motion": now.frame.motion / (width / 2, -height / 2, 1)}
 
 
 def jittered(before: Taken, now: Taken) -> dict[str, Any]:
-    """Motion between cameras with their jitter."""
+    """Motion between cameras, including their jitter."""
     return {"motion": now.frame.motion - [*(before.jitter - now.jitter), 0]}
 
 
 def in_view_space(before: Taken, now: Taken) -> dict[str, Any]:
-    """Normals as a camera that looks along -z has them."""
+    """Normals in the space of a camera that looks along -z."""
     return {"normal": now.frame.normal @ (now.axes * [[1], [1], [-1]]).T}
 
 
 def buffer(before: Taken, now: Taken) -> dict[str, Any]:
-    """Depth as a graphics API's buffer holds it, 0 near and 1 far."""
+    """Depth as in the depth buffer of a graphics API, 0 near and 1 far."""
     return {"depth": FAR / (FAR - NEAR) * (1 - NEAR / now.frame.depth.astype(np.float64))}
 
 
 def inverted(before: Taken, now: Taken) -> dict[str, Any]:
-    """Depth that is 1 at the near plane and 0 at the far one."""
+    """Depth as in an inverted depth buffer, 1 at the near plane and 0 at the far one."""
     return {"depth": np.maximum(FAR - now.frame.depth, 0) / (FAR - NEAR)}
 
 
@@ -151,19 +151,19 @@ def along_the_ray(before: Taken, now: Taken) -> dict[str, Any]:
 
 
 def srgb_encoded(albedo: Array) -> Array:
-    """What a texture file holds."""
+    """Encode with sRGB, as in a texture file."""
     return display(np.minimum(albedo, 1))
 
 
 def shining_albedo(before: Taken, now: Taken) -> dict[str, Any]:
-    """Albedo that holds emitted light; in a scene without any, that of a lamp in the corner."""
+    """Albedo that contains emitted light; in a scene without any, that of a lamp in the corner."""
     emission = np.zeros_like(now.frame.albedo) if now.frame.emission is None else now.frame.emission.copy()
     emission[:8, :8] += 5.0
     return {"albedo": now.frame.albedo + emission}
 
 
 def renumbered(before: Taken, now: Taken) -> dict[str, Any]:
-    """Ids in the order in which objects come up in this frame."""
+    """Ids in the order in which the objects appear in this frame."""
     ids = now.frame.id
     order = np.random.default_rng(int(1e6 * abs(now.jitter[0]))).permutation(np.unique(ids))
     return {"id": order[np.searchsorted(np.unique(ids), ids)].astype(np.uint32)}
@@ -177,7 +177,7 @@ def not_a_number(color: Array) -> Array:
 
 
 def of(field: str, change: Callable[[Any], Any]) -> Callable[[Taken, Taken], dict[str, Any]]:
-    """A change of one field of a frame."""
+    """A mistake that changes one field of a frame."""
     return lambda before, now: {field: change(getattr(now.frame, field))}
 
 

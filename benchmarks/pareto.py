@@ -1,4 +1,4 @@
-"""The Pareto front: what nothing else beats in time and in error at once."""
+"""The Pareto front: points that no other point beats in both time and error."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 
 def pareto_front(points: Sequence[tuple[float, float]]) -> list[int]:
-    """Find the points that no other dominates, less being better in both coordinates.
+    """Find the points that no other point dominates; less is better in both coordinates.
 
     Parameters
     ----------
@@ -16,7 +16,7 @@ def pareto_front(points: Sequence[tuple[float, float]]) -> list[int]:
     Returns
     -------
     list of int
-        Indices into `points`, by rising time. Equal points are all on the front or none is.
+        Indices into `points`, by rising time. Of equal points, either all or none are on the front.
     """
 
     def dominated(time: float, error: float) -> bool:

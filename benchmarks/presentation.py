@@ -1,4 +1,4 @@
-"""Results as rows of a table and as a plot, the Pareto front of time and each error marked in both."""
+"""Results as a table and as a plot; both mark the Pareto front of time and each error."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from benchmarks.measurements import Result
 from benchmarks.pareto import pareto_front
 from svgf_cl.bench.tables import Table
 
-# Beside a figure: nothing measured is both faster and better.
+# Mark for figures that no other variant beats in both time and error.
 MARK = "•"
 
 
 @dataclass(frozen=True)
 class Column:
-    """A kind of error, and how it is spelt.
+    """A kind of error, and its format.
 
     Parameters
     ----------
     title : str
-        With an arrow that points to where the better figures are.
+        With an arrow in the direction of better figures.
     of : callable
-        The figure of a result; NaN where it was not measured.
+        The figure of a result; NaN if it was not measured.
     spec : str
-        Its format. Front and plot are of the figures as printed: a difference that does not show puts nothing on it.
+        Its format. Front and plot use the figures as printed, so that an invisible difference has no effect.
     plotted : bool
     """
 
@@ -62,7 +62,7 @@ def oracle_column() -> Column:
 
 
 def quality_columns(footage: str) -> list[Column]:
-    """Errors against the truth of the footage of that name."""
+    """Errors compared with the truth of the footage of this name."""
 
     def of(metric: str) -> Callable[[Result], float]:
         return lambda result: getattr(result.quality.get(footage), metric, math.nan)
@@ -81,7 +81,7 @@ def milliseconds(time: float) -> str:
 
 
 def table(title: str, results: Sequence[Result], columns: Sequence[Column]) -> Table:
-    """One row a variant that has any of the figures; those on their Pareto front are marked."""
+    """A row for each variant that has any of the figures; figures on their Pareto front are marked."""
     fronts = [column.front(results) for column in columns]
 
     def row(number: int, result: Result) -> list[str]:
@@ -96,13 +96,13 @@ def table(title: str, results: Sequence[Result], columns: Sequence[Column]) -> T
 
 
 def markdown(table: Table) -> str:
-    """A table as it may stand in docs/results.md, without its title."""
+    """The table in Markdown for docs/results.md, without its title."""
     lines = [table.columns, ["---"] * len(table.columns), *table.rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
 
 
 def plot(results: Sequence[Result], footages: Sequence[str], title: str) -> bytes:
-    """A PNG: a row of panels for each footage, then the oracle's panel and the names."""
+    """A PNG: a row of panels for each footage, then the panel of the oracle and the names."""
     shown = {name: [column for column in quality_columns(name) if column.plotted] for name in footages}
     width = 1 + max(len(columns) for columns in shown.values())
     figure = Figure(figsize=(4 * width, 4 * len(shown)), layout="constrained")
@@ -110,7 +110,7 @@ def plot(results: Sequence[Result], footages: Sequence[str], title: str) -> byte
     for line, columns in zip(grid, shown.values(), strict=True):
         for axes, column in zip(line, columns, strict=False):
             panel(axes, column, results)
-    grid[0, -1].set_yscale("log")  # from rounding to what "fast" and 16 bits lose
+    grid[0, -1].set_yscale("log")  # errors range from rounding to those of "fast" and 16 bits
     panel(grid[0, -1], oracle_column(), results)
     for axes in grid[1:, -1]:
         axes.axis("off")
@@ -122,7 +122,7 @@ def plot(results: Sequence[Result], footages: Sequence[str], title: str) -> byte
 
 
 def panel(axes: Axes, column: Column, results: Sequence[Result]) -> None:
-    """Draw every result by its number, the front joined by steps, the default in red."""
+    """Draw every result with its number, the front as steps, and the default in red."""
     front = column.front(results)
     corners = [column.point(result) for result in front]
     axes.step([time for time, _ in corners], [figure for _, figure in corners], where="post", color="grey")
@@ -132,7 +132,7 @@ def panel(axes: Axes, column: Column, results: Sequence[Result]) -> None:
         place = column.point(result)
         color = "tab:red" if number == 1 else "tab:blue"
         fill, ink = (color, "white") if result in front else ("white", color)
-        layer = 2 + 1 / number  # where they lie on each other, the default on top
+        layer = 2 + 1 / number  # if they overlap, the default is on top
         axes.plot(*place, "o", markersize=13, color=color, markerfacecolor=fill, zorder=layer)
         axes.annotate(str(number), place, ha="center", va="center_baseline", color=ink, fontsize=8, zorder=layer)
     axes.set_xlabel("device ms a frame")
@@ -142,7 +142,7 @@ def panel(axes: Axes, column: Column, results: Sequence[Result]) -> None:
 
 
 def names(axes: Axes, results: Sequence[Result]) -> None:
-    """Say which number is which variant, and what the markers mean."""
+    """The names of the numbered variants, and the meaning of the markers."""
     handles = [
         Line2D([], [], marker="o", linestyle="-", color="grey", label="on the Pareto front"),
         Line2D([], [], marker="o", linestyle="", color="grey", markerfacecolor="white", label="not on it"),

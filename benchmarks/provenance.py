@@ -1,4 +1,4 @@
-"""What was measured, on what, when: stands beside every figure."""
+"""Where figures are from: device, versions and date, which are shown beside all figures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Speed of several denoisers in one interleaved run, so that what disturbs the machine disturbs all alike."""
+"""Times several denoisers in turns, so that other work on the machine affects all of them alike."""
 
 from __future__ import annotations
 
@@ -30,26 +30,26 @@ class Spread:
 
     @classmethod
     def of(cls, samples: Sequence[float]) -> Spread:
-        """Condense samples."""
+        """Summarise samples."""
         low, median, high = np.percentile(samples, (10, 50, 90)).tolist()
         return cls(median, low, high)
 
     def __format__(self, spec: str) -> str:
-        """All three figures in the format of one: ``median (low-high)``."""
+        """All three figures with this format: ``median (low-high)``."""
         return f"{self.median:{spec}} ({self.low:{spec}}-{self.high:{spec}})"
 
 
 def race(
     denoisers: Mapping[str, Denoiser], filters: Mapping[str, OidnFilter], rounds: int, advance: Callable[[], None]
 ) -> Times:
-    """Let every denoiser filter the same frame of the built-in room, one after the other, round after round.
+    """Let all denoisers filter the same frame of the built-in room in turns, for several rounds.
 
     Parameters
     ----------
     denoisers : mapping from name to Denoiser
-        All of one shape, that of the frames.
+        All for the shape of the frames.
     filters : mapping from name to OidnFilter
-        Of the same shape.
+        For the same shape.
     rounds : int, >= 1
     advance : callable
         Called after each round, for a progress bar.
@@ -57,14 +57,14 @@ def race(
     Returns
     -------
     mapping from (name, clock) to list of float, s
-        `HOST`: a call of `Denoiser.denoise` from numpy arrays into one, with its copies, or OIDN's execution alone;
-        `EVENT`: the sum of that call's passes from OpenCL events.
+        `HOST`: a call of `Denoiser.denoise` from numpy arrays to a numpy array, with its copies, or OIDN's execution
+        alone; `EVENT`: the sum of that call's passes, from OpenCL events.
     """
     (shape,) = {den.shape for den in denoisers.values()}
     inputs = list(room_frames(shape, PERIOD))
     out = np.empty((*shape, 3), np.float32)
     for den in denoisers.values():
-        for frame in inputs:  # kernels are built, memory is touched, history is long enough
+        for frame in inputs:  # builds kernels, touches memory, fills the history
             den.denoise(frame, out=out)
     times: dict[tuple[str, str], list[float]] = defaultdict(list)
     for index in range(rounds):
@@ -85,12 +85,15 @@ def race(
 
 
 def ratio(slow: Sequence[float], fast: Sequence[float]) -> Spread:
-    """How many times faster one denoiser was than the other in the same round."""
+    """How many times as long the slow one took as the fast one in the same round."""
     return Spread.of(np.divide(slow, fast).tolist())
 
 
 def results(times: Times, device: str, shape: Shape) -> Iterator[Result]:
-    """The times as a benchmark's results; `device` is the selector of svgf_cl's, the race's size `shape`."""
+    """The times as a benchmark's results.
+
+    `device` is the selector of svgf_cl's device, `shape` the size of the frames.
+    """
     for (name, clock), seconds in times.items():
         words = ".".join(("race", *name.lower().split(), extent(shape)))
         facts = {"race": name, "width": shape[1], "height": shape[0]}

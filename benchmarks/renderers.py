@@ -1,8 +1,8 @@
-"""Frames of renderers before and after ``svgf-cl denoise`` without any option, against references of the same renderer.
+"""Compares frames of renderers before and after ``svgf-cl denoise`` without options with references.
 
-Each folder has the noisy frames in ``noisy`` and what they converge to in ``reference``, by the same numbers; frames
-without a reference are filtered, and not judged. A reference has one sample of the truth, whose own noise counts as
-error. The view layer is the one that the reference has. `scripts/renderers` renders such folders.
+Each folder has noisy frames in ``noisy``, and references with the same numbers in ``reference``; frames without a
+reference are filtered, but not measured. There is only one reference per frame, so its own noise counts as error. The
+view layer is that of the reference. `scripts/renderers` renders such folders.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ COLUMNS = [each for each in MEASURES if each.key in SHOWN]
 
 @dataclass(frozen=True)
 class Gain:
-    """How good the pictures of a folder are, before and after."""
+    """The quality of a folder's pictures, before and after."""
 
     folder: Path
     before: Findings
@@ -53,7 +53,7 @@ class Gain:
 
     @property
     def worse(self) -> list[str]:
-        """The measures by which pictures became worse."""
+        """The measures in which pictures became worse."""
         return [
             each.title
             for each in COLUMNS
@@ -62,7 +62,7 @@ class Gain:
 
     @property
     def spelled(self) -> list[str]:
-        """As a row of the table."""
+        """The row of the table."""
         pairs = [(each, value(self.before, each.key), value(self.after, each.key)) for each in COLUMNS]
         figures = [f"{spelled(each, before)} → {spelled(each, after)}" for each, before, after in pairs]
         return ["/".join(self.folder.resolve().parts[-2:]), *figures]
@@ -70,14 +70,14 @@ class Gain:
 
 @dataclass
 class Judged:
-    """What is judged of a folder, frame by frame."""
+    """The measures of a folder, frame by frame."""
 
     before: Judge = field(default_factory=Judge)
     after: Judge = field(default_factory=Judge)
     earlier: tuple[int, View] | None = None
 
     def see(self, number: int, pictures: tuple[Linear, Linear], truth: Linear) -> None:
-        """Judge a frame by its number: its picture before and after, and its reference."""
+        """Measure a frame by its number: its pictures before and after, and its reference."""
         frame, halves, earlier = bare_frame(pictures[0]), (truth, truth), None
         if self.earlier and self.earlier[0] == number - 1:
             earlier = self.earlier[1].frame, self.earlier[1].halves
@@ -111,12 +111,12 @@ def measured(
 
 
 def gain(folder: Path) -> Gain:
-    """Denoise the frames of a folder and judge those that have a reference.
+    """Denoise the frames of a folder, and measure those that have a reference.
 
     Raises
     ------
     FileError
-        A folder or file is missing or cannot be read, no frame has a reference, or sizes differ.
+        If a folder or file is missing or cannot be read, if no frame has a reference, or if sizes differ.
     """
     frames, references = folder / "noisy", folder / "reference"
     require(frames)
@@ -134,7 +134,7 @@ def gain(folder: Path) -> Gain:
 
 
 def pictures(paths: Sequence[Path], how: ReadAs) -> Iterator[tuple[Path, Linear, Linear]]:
-    """Each frame's picture before and after, on the display window."""
+    """The pictures of each frame before and after, in the display window."""
     shot = Shot(paths, how)
     for index, made in made_forward(shot, Method(DEFAULT()), range(len(shot)), look=None):
         image = made.source.image
@@ -143,14 +143,14 @@ def pictures(paths: Sequence[Path], how: ReadAs) -> Iterator[tuple[Path, Linear,
 
 
 def reference(path: Path) -> tuple[Linear, str]:
-    """The picture of a reference, and the view layer it is of."""
+    """The picture of a reference, and its view layer."""
     image = read_image(path)
     reading = Reading(path, image, ReadAs())
     return shown(path, image, reading), reading.view_layer
 
 
 def shown(path: Path, image: Image, reading: Reading) -> Linear:
-    """The picture of a file on its display window, what is not finite as black."""
+    """The picture of a file in its display window; values that are not finite become black."""
     picture = stacked(path, image.planes, reading.picture)
     return placed(
         np.where(np.isfinite(picture), picture, np.float32(0)), image.windows.data, image.windows.display, 0.0

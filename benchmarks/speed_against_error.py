@@ -1,18 +1,19 @@
-"""Speed against error: what every choice that trades one for the other costs and brings, in one table and one plot.
+"""Speed against error: time and errors of every setting that trades one for the other, as a table and a plot.
 
-Time: milliseconds a frame of the closed-form room on the default device. All variants take turns; a time is the default
-variant's median, times the median of its ratio to that in one turn.
+Time: milliseconds per frame of the built-in room on the default device. The variants are timed in turns. The time of a
+variant is the median of the default's time, multiplied by the median of the ratio of both times of a turn.
 
-Error, two kinds:
+Error, of two kinds:
 
-- against the float64 oracle *that does the same* (levels, taps, antialiasing alike): what arithmetic and storage lose.
-  Root mean square over a short sequence of the room, relative to the picture's mean.
-- against path-traced truth, in a band of rows of the last two of 24 frames of a camera moving through a scene at 1
-  sample per pixel, of the size that is timed. "area": jittered rays, truth averaged over the pixel's area, as a
-  renderer is used; without TAA much of the error is aliasing of edges, which no filter of light can remove. "centre":
-  all rays through pixel centres, the truth's too: the filter's own error, without TAA, which needs jitter.
+- compared with the float64 oracle *with the same settings* (levels, taps, antialiasing): the loss by arithmetic and
+  storage. It is the root mean square over a short sequence of the room, relative to the picture's mean.
+- compared with the path-traced truth, in a band of rows of the last two of 24 frames. A camera moves through a scene at
+  1 sample per pixel, at the size that is timed. "area": rays are jittered, and the truth is the mean over the pixel's
+  area, as usual in rendering; without TAA much of the error is aliasing of edges, which no filter of light can remove.
+  "centre": all rays, including those of the truth, go through pixel centres; this is the filter's own error, without
+  TAA, which needs jitter.
 
-How the metrics are defined: `svgf_cl.compare.metrics`. The truth has noise of its own, given below the table.
+`svgf_cl.compare.metrics` defines the metrics. The truth has noise, which is listed below the table.
 """
 
 from __future__ import annotations
@@ -80,7 +81,7 @@ def speed_against_error(
 
 
 def found(footages: Sequence[Footage], rounds: int) -> Findings:
-    """Measure every variant on the default device, on footages of one scene and size."""
+    """Measure every variant on the default device, with footages of one scene and one size."""
     film = footages[0]
     about = {"size": extent(film.shape), "truth": f"{film.scene}, {film.spp} spp"}
     with progress_bar(TITLE.lower(), steps(VARIANTS, footages, rounds)) as advance:

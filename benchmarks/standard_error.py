@@ -1,9 +1,9 @@
-"""How often a picture lies within the standard error that the filter says it has: once, and twice.
+"""Measures how many errors are within one and within two of the filter's own standard errors.
 
-The frames are those of `svgf-cl compare --no-jitter`. For every pixel that shows something, the error of the picture's
-luminance is divided by the square root of two variances: that of the stage `standard_error`, and the truth's own. The
-latter is a quarter of the squared difference of its two halves, averaged over 7x7 pixels. Were errors normally
-distributed, 68 % would lie within 1 and 95 % within 2.
+The frames are those of `svgf-cl compare --no-jitter`. For every pixel that is not a miss, the error of the picture's
+luminance is divided by the square root of the sum of two variances: the square of the stage `standard_error`, and the
+variance of the truth. The latter is a quarter of the squared difference of the truth's two halves, averaged over 7x7
+pixels. If errors had a normal distribution, 68 % would be within 1 and 95 % within 2.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def standard_error(
 
 
 def in_standard_errors(footage: Footage, advance: Callable[[], None]) -> Array:
-    """The errors of all pixels of the judged frames that show something, each over its standard deviation: (N,)."""
+    """The errors of all hits in the measured frames, divided by their standard deviations: (N,)."""
     halves = footage.truths(advance)
     found = []
     with Denoiser(footage.shape, settings=Kalman(standard_error=True)) as denoiser:
@@ -75,7 +75,7 @@ def in_standard_errors(footage: Footage, advance: Callable[[], None]) -> Array:
 
 
 def smooth(values: Array) -> Array:
-    """Mean over the 7x7 pixels around each; (H, W)."""
+    """The mean over the 7x7 pixels around each pixel; (H, W)."""
     taps = [shifted(offset, (values.shape[0], values.shape[1])) for offset in square(3)]
     total: Array = np.mean([values[y, x] for y, x, _ in taps], axis=0)
     return total

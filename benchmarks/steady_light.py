@@ -1,4 +1,4 @@
-"""Variance of light far brighter than its noise: the paper's raw moments and the kernels', against float64."""
+"""Variance of light far brighter than its noise: the paper's raw moments and the kernels' moments against float64."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ The input is {FRAMES} frames with a luminance of {LIGHT:g} and normally distribu
 
 
 def steady_frames(noise: float, count: int = FRAMES, seed: int = 0) -> Iterator[Frame]:
-    """A wall at rest; `noise` is the standard deviation of its light over `LIGHT`."""
+    """A still wall; `noise` is the standard deviation of its light divided by `LIGHT`."""
     rng = np.random.default_rng(seed)
     for _ in range(count):
         light = LIGHT * (1 + noise * rng.standard_normal((*SHAPE, 1)))
@@ -53,7 +53,7 @@ def raw_moments(frames: Iterable[Frame], alpha: float) -> NDArray[np.float32]:
 
 
 def kept_variance(denoiser: Denoiser, frames: Iterable[Frame]) -> NDArray[np.float32]:
-    """Variance as the device keeps it, (H, W)."""
+    """Variance as the device stores it, (H, W)."""
     for frame in frames:
         denoiser.denoise(frame)
     variance: NDArray[np.float32] = denoiser.stage("moment_variance")[0]
@@ -61,7 +61,7 @@ def kept_variance(denoiser: Denoiser, frames: Iterable[Frame]) -> NDArray[np.flo
 
 
 def exact_variance(frames: Iterable[Frame]) -> NDArray[np.float64]:
-    """Variance as the oracle keeps it, (H, W)."""
+    """Variance as the oracle computes it, (H, W)."""
     oracle = Oracle(SHAPE, Settings())
     for frame in frames:
         oracle.denoise(frame)
@@ -70,7 +70,7 @@ def exact_variance(frames: Iterable[Frame]) -> NDArray[np.float64]:
 
 
 def errors(noise: float, queue: cl.CommandQueue | None = None) -> tuple[float, float, float]:
-    """Rms error relative to the mean variance: of raw moments, of the kernels', of the kernels' in 16 bits."""
+    """Rms error relative to the mean variance: of raw moments, of the kernels, and of the kernels with 16 bits."""
     frames = list(steady_frames(noise))
     expected = exact_variance(frames)
     settings = Settings(), Settings(half_history=True)

@@ -1,10 +1,10 @@
-"""Which tests run on an OpenCL implementation, as arguments of pytest."""
+"""The tests for each OpenCL implementation, as arguments of pytest."""
 
 from __future__ import annotations
 
-# The kernels once more, on path-traced frames.
+# The same tests of kernels, on path-traced frames.
 TRACED = "tests/tracer/test_kernels_on_traced.py"
-# All that touches a device; the rest is the same everywhere.
+# All tests that use a device; other tests have the same result everywhere.
 ON_A_DEVICE = (
     "tests/kernels",
     "tests/hard",
@@ -15,18 +15,18 @@ ON_A_DEVICE = (
     "tests/svgf_cl/filters/test_stages.py",
     "tests/svgf_cl/oracle/test_accuracy.py",
 )
-# The kernels in all their variants.
+# Tests of all variants of the kernels.
 VARIANTS = ("tests/kernels", "tests/hard/test_variants.py", "-k", "follows_the_oracle or oclgrind")
 KERNELS = (TRACED, *VARIANTS)
 SUITES = {
     "PoCL": ("tests",),
-    # A simulator takes a millisecond and more for every pixel of a frame, and traced ones have many.
+    # A simulator takes a millisecond or more for each pixel, and traced frames have many pixels.
     "Oclgrind": ("-p", "tests.oclgrind", "tests/test_oclgrind.py", *VARIANTS),
 }
-# It has 2 GiB of memory, and takes minutes for 10 000 frames.
+# It has 2 GiB of memory, and would take minutes for 10 000 frames.
 LEFT_OUT = {"rusticl": ("-k", "not 8k_follows and not 10000_frames")}
 
 
 def suite(name: str, *, brief: bool) -> tuple[str, ...]:
-    """What pytest is to run on an implementation."""
+    """The arguments of pytest for an implementation."""
     return SUITES.get(name) or (KERNELS if brief else (*ON_A_DEVICE, *LEFT_OUT.get(name, ())))

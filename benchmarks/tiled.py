@@ -1,7 +1,7 @@
-"""What working in tiles costs: the time of a frame in tiles over that of the same frame at once, which is as exact.
+"""Measures the cost of tiles: the time of a frame in tiles divided by the time of the same frame as a whole.
 
-Both take the same frames of the built-in room by turns, numpy arrays in and out. The ratio is that of two times of one
-round, and its median is shown.
+Both filter the same frames of the built-in room in turns, from numpy arrays to numpy arrays. The ratio compares two
+times of the same round; its median is shown.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def main(
     tiles: Annotated[int, typer.Option(min=2, help="How many tiles.")] = 4,
     rounds: Annotated[int, typer.Option(min=1)] = 10,
 ) -> None:
-    """Time a frame in tiles against the same frame at once, with the default filter."""
+    """Compare the time of a frame in tiles with that of the whole frame, with the default filter."""
     frames = list(room_frames((height, width), PERIOD))
     whole = Denoiser((height, width))
     tiling = Tiling(DEFAULT().pipeline(Inputs.of(frames[0])), (height, width), whole.tuning.row_alignment)
@@ -49,7 +49,7 @@ def main(
 
 
 def limit(tiling: Tiling, tiles: int) -> int:
-    """The most memory that makes so many tiles of a frame."""
+    """The largest memory limit that divides a frame into this many tiles."""
     whole = sum(tiling.whole())
     for share in np.linspace(1, 0, 200, endpoint=False):
         window = tiling.window(int(share * whole), whole)
@@ -59,7 +59,7 @@ def limit(tiling: Tiling, tiles: int) -> int:
 
 
 def seconds(denoiser: Denoiser | TiledDenoiser, frame: Frame) -> float:
-    """Of one call."""
+    """Seconds for one call."""
     begin = time.perf_counter()
     denoiser.denoise(frame)
     return time.perf_counter() - begin

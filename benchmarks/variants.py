@@ -1,4 +1,4 @@
-"""The choices that trade speed for error: each alone, against the default, and those that make sense together."""
+"""The settings that trade speed for error: each one alone compared with the default, and useful combinations."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ class Variant:
     Parameters
     ----------
     name : str
-        What differs from the default.
+        The difference from the default.
     settings : TemporalFilter
     signals : int, 1 or 2
-        2 filters direct and indirect light apart.
+        2 filters direct and indirect light separately.
     """
 
     name: str

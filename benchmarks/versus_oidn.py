@@ -1,18 +1,18 @@
-"""svgf_cl against Open Image Denoise: the same frames, the same threads, one interleaved run; speed, memory and error.
+"""Compares svgf_cl with Open Image Denoise in one run: same frames, same number of threads; speed, memory and error.
 
-Speed: in every round each denoiser filters the same frame of the built-in room once, after a warm-up.
+Speed: in every round, each denoiser filters the same frame of the built-in room once, after a warm-up.
 
-- "svgf_cl ...", host clock: the whole call of `Denoiser.denoise` from numpy arrays into a numpy array, all copies
-  included; event clock: the passes of that same call, from OpenCL events. "5x5": SVGF with the paper's taps; "SVGF":
-  with 3x3 taps; "default": the default filter, or that with other settings.
-- "OIDN ...": ``oidnExecuteFilter`` alone, HDR, with albedo and normal, in place on images that were filled before.
+- "svgf_cl ...": the host clock times the whole call of `Denoiser.denoise` from numpy arrays to a numpy array, with all
+  copies; the event clock sums the passes of that call, from OpenCL events. "5x5" is SVGF with the paper's taps, "SVGF"
+  is SVGF with 3x3 taps, and "default" is the default filter, or that filter with other settings.
+- "OIDN ...": ``oidnExecuteFilter`` alone, HDR, with albedo and normal, in place on images that are filled beforehand.
 
-A ratio is that of two times of one round; what counts is its median over the rounds. Memory is what a denoiser holds
-beside the images that go in and come out: `Denoiser.nbytes`, and what the process grew by while OIDN was set up and ran
+A ratio compares two times of the same round; the result is the median over the rounds. Memory is that of a denoiser
+without its input and output images: `Denoiser.nbytes`, and the growth of the process while OIDN is set up and runs
 once.
 
-Error: that of one footage of `benchmarks.footage` at the same size, rays jittered, against the path-traced truth. OIDN
-sees one frame; svgf_cl knows those before it.
+Error: that of one footage of `benchmarks.footage` at the same size, with jittered rays, compared with the path-traced
+truth. OIDN uses one frame; svgf_cl uses the earlier ones, too.
 """
 
 from __future__ import annotations
@@ -53,13 +53,13 @@ AREA, _ = FOOTAGE
 
 TITLE = "Against Open Image Denoise"
 
-# Filters that take part beside that of a user who sets nothing: as in the paper, and with 3x3 taps.
+# Filters that are compared in addition to the default one: SVGF as in the paper, and with 3x3 taps.
 OTHERS = {"5x5": Settings(taps="5x5"), "SVGF": Settings()}
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """What was found.
+    """The results.
 
     Parameters
     ----------
@@ -68,9 +68,9 @@ class Comparison:
         By denoiser.
     errors : mapping from str to Quality
     about : dict of str to str
-        What was measured, on what, when.
+        What was measured, on which device, and when.
     results : tuple of Result
-        The times, as the benchmark keeps them.
+        The times as results of the benchmark.
     """
 
     times: Times
@@ -86,16 +86,16 @@ class Comparison:
 
     @property
     def remarks(self) -> list[str]:
-        """What has to be known about the figures."""
+        """Notes that explain the figures."""
         return [f"{key}: {value}" for key, value in self.about.items()]
 
     @property
     def section(self) -> Section:
-        """Of the benchmark's report."""
+        """The section of the benchmark's report."""
         return Section(TITLE, tables=self.tables, notes=self.remarks)
 
     def write(self, path: Path) -> None:
-        """Write everything, all samples too, as JSON."""
+        """Write everything, including all samples, as JSON."""
         record: dict[str, Any] = {"about": self.about, "bytes": self.memory}
         record["seconds"] = {f"{name}, {clock}": seconds for (name, clock), seconds in self.times.items()}
         record["error"] = {name: asdict(found) for name, found in self.errors.items()}
@@ -128,7 +128,7 @@ def versus_oidn(
 
 
 def compared(shape: Shape, settings: Filter, rounds: int, *, clean_aux: bool = False) -> Comparison:
-    """Race `OTHERS` and svgf_cl with `settings` against OIDN, and hold all against the truth."""
+    """Time `OTHERS` and svgf_cl with `settings` beside OIDN, and compare the pictures of all with the truth."""
     require_flip()
     chosen = {**OTHERS, "default": settings}
     denoisers = {f"svgf_cl {name}": Denoiser(shape, settings=each) for name, each in chosen.items()}
@@ -152,7 +152,7 @@ def compared(shape: Shape, settings: Filter, rounds: int, *, clean_aux: bool = F
 
 
 def oidn_filters(shape: Shape, device: cl.Device, clean_aux: bool) -> dict[str, OidnFilter]:
-    """OIDN at every quality, with as many threads as a CPU device has; with all where `device` is no CPU."""
+    """OIDN at every quality, with as many threads as a CPU device has; with all threads if `device` is not a CPU."""
     threads = threads_beside(device)
     return {f"OIDN {quality}": OidnFilter(shape, quality, threads, clean_aux=clean_aux) for quality in QUALITIES}
 
@@ -160,7 +160,7 @@ def oidn_filters(shape: Shape, device: cl.Device, clean_aux: bool) -> dict[str, 
 def qualities(
     denoisers: Mapping[str, Denoiser], filters: Mapping[str, OidnFilter], footage: Footage, advance: Callable[[], None]
 ) -> dict[str, Quality]:
-    """Hold what every denoiser makes of a footage, one signal, against the truth about it; the noise itself, too."""
+    """Compare each denoiser's pictures of a footage, with one signal, with the truth; also the noise of the truth."""
     truth = [0.5 * (first + second) for first, second in footage.halves(advance)]
     pictures: dict[str, list[Linear]] = {name: [] for name in ("noisy", *denoisers, *filters)}
     for den in denoisers.values():

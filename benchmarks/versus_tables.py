@@ -11,7 +11,7 @@ from svgf_cl.bench.tables import Table
 
 
 def time_table(times: Times, memory: Mapping[str, int]) -> Table:
-    """One row a denoiser and clock: its times; and its memory."""
+    """A row for each denoiser and clock: its times, and its memory."""
     rows = []
     for (name, clock), samples in times.items():
         spread = Spread.of(samples)
@@ -21,7 +21,7 @@ def time_table(times: Times, memory: Mapping[str, int]) -> Table:
 
 
 def ratio_table(times: Times) -> Table:
-    """One row a rival: how many times as long it took as svgf_cl, by either clock."""
+    """A row for each rival: how many times as long it took as svgf_cl, with both clocks."""
     own = {name for name, clock in times if clock == EVENT}
     bases = [key for key in times if key[0] in own]
     rivals = [key for key in times if key[0] not in own]
@@ -31,7 +31,7 @@ def ratio_table(times: Times) -> Table:
 
 
 def error_table(errors: Mapping[str, Quality]) -> Table:
-    """One row a denoiser: its errors."""
+    """A row for each denoiser: its errors."""
     rows = [
         [name, f"{found.psnr:.2f}", f"{found.relmse:.4f}", f"{found.flip:.4f}", f"{found.temporal:.4f}"]
         for name, found in errors.items()

@@ -1,1 +1,1 @@
-"""One run of everything on a GPU, into one folder; and what can be said of GPUs on paper. See docs/gpu.md."""
+"""Measures everything on a GPU in one run, and computes what is possible on GPUs at best. See docs/gpu.md."""

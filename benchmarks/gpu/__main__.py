@@ -1,4 +1,4 @@
-"""Everything about one GPU in one folder: ``make gpu``. See docs/gpu.md."""
+"""``make gpu``: measures one GPU, and writes everything into one folder. See docs/gpu.md."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def gpu(
 
 
 def run(report: Report, folder: Path) -> None:
-    """Take all steps, each on the report's device, and write the report after each."""
+    """Run all steps on the report's device, and write the report after each step."""
     report.write(folder)
     plan = steps.dry(folder) if report.dry_run else steps.full(folder)
     environment = os.environ | {devices.VARIABLE: report.device.selector, "PYTHONUNBUFFERED": "1"}

@@ -1,4 +1,4 @@
-"""A step's process: it may crash, hang or take too long, and the run goes on."""
+"""Runs a step in its own process: if it crashes, hangs or takes too long, the other steps still run."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]  # of the checkout, where tests are found
-GRACE = 10.0  # seconds to write what is known, once a process is told to stop
-DYING = 2.0  # seconds to end, once it is killed
-POLL = 0.2  # seconds between two looks at it
+ROOT = Path(__file__).parents[2]  # of the checkout that contains the tests
+GRACE = 10.0  # seconds for writing results after a process is told to stop
+DYING = 2.0  # seconds to end after a process is killed
+POLL = 0.2  # seconds between two checks of the process
 
 
 @dataclass(frozen=True)
@@ -25,10 +25,10 @@ class Ended:
     Parameters
     ----------
     code : int, optional
-        Its exit code, a signal's number below 0; None if it was stopped at its limit.
+        Its exit code, below 0 for a signal; None if it was stopped at its time limit.
     seconds : float
     output, errors : str
-        What it wrote to stdout and stderr.
+        Its output on stdout and stderr.
     """
 
     code: int | None
@@ -38,7 +38,7 @@ class Ended:
 
     @property
     def is_short(self) -> bool:
-        """Whether it was stopped at its limit."""
+        """Whether it was stopped at its time limit."""
         return self.code is None
 
 
@@ -49,19 +49,20 @@ def run(
     environment: Mapping[str, str],
     tick: Callable[[float], None],
 ) -> Ended:
-    """Run ``python -m`` with a command, for so many seconds at most.
+    """Run ``python -m`` with a command and a time limit.
 
     Parameters
     ----------
     command : sequence of str
         A module and its arguments.
     seconds : float
-        When it is told to stop, as Ctrl-C does; after `GRACE` more it is killed with all that it started.
+        The time limit. The process is interrupted as by Ctrl-C; after `GRACE` more seconds it is killed with all its
+        children.
     logs : pair of Path
-        Files that get its stdout and stderr.
+        Files for its stdout and stderr.
     environment : mapping of str to str
     tick : callable
-        Is told now and then how many seconds have passed.
+        Called from time to time with the seconds that have passed.
     """
     begin = time.monotonic()
     with logs[0].open("w") as output, logs[1].open("w") as errors:
@@ -72,7 +73,7 @@ def run(
             stdin=subprocess.DEVNULL,
             stdout=output,
             stderr=errors,
-            start_new_session=True,  # so that all that it starts can be ended with it
+            start_new_session=True,  # so that its children can be ended with it
         )
         try:
             while process.poll() is None and time.monotonic() - begin < seconds:
@@ -86,9 +87,9 @@ def run(
 
 
 def end(process: subprocess.Popen[bytes]) -> None:
-    """End a process and what it has started; one that a driver holds in the kernel is left behind."""
+    """End a process and its children; a process that hangs in a driver inside the kernel is left behind."""
     if process.poll() is None:
-        os.killpg(process.pid, signal.SIGINT)  # all of it, as a terminal does
+        os.killpg(process.pid, signal.SIGINT)  # to the whole group, as a terminal does
         with contextlib.suppress(subprocess.TimeoutExpired):
             process.wait(GRACE)
     with contextlib.suppress(ProcessLookupError):

@@ -1,4 +1,4 @@
-"""Which device a run is for."""
+"""Chooses the device of a run."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ WHAT_TO_DO = (
 
 
 def chosen(reports: Sequence[DeviceReport], *, dry_run: bool) -> DeviceReport:
-    """The device that ``PYOPENCL_CTX`` names, else the fastest GPU that works; of a dry run, the fastest device.
+    """The device that ``PYOPENCL_CTX`` names, or else the fastest GPU that works; in a dry run, the fastest device.
 
     Raises
     ------
     DeviceError
-        None works, or the one that is named; or it is no GPU, and this is no dry run.
+        If none works or the named one does not, or if it is no GPU and this is not a dry run.
     """
     if dry_run:
         return devices.choose(reports)

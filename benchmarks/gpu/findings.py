@@ -1,4 +1,4 @@
-"""What each step of a run has left, read as tables."""
+"""Reads the results of each step of a run as tables."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ FAULTS = ("failure", "error")
 
 @dataclass(frozen=True)
 class Found:
-    """What a step found.
+    """The result of a step.
 
     Parameters
     ----------
     tables : sequence of Table
     notes : sequence of str
-        What was left out, and the like.
+        What was left out, and other remarks.
     complaint : str
-        Why the step counts as failed; empty if it does not.
+        The reason why the step counts as failed; empty if it does not.
     data : dict
-        The same for programs, for ``report.json``.
+        The same data for programs, for ``report.json``.
     """
 
     tables: Sequence[Table] = ()
@@ -45,7 +45,7 @@ class Found:
 
 
 def tests(result: Path, ended: Ended) -> Found:
-    """What pytest's JUnit XML says: how many tests of each file passed, and why others failed."""
+    """The result of pytest's JUnit XML: how many tests of each file passed, and why others failed."""
     cases = [case for case in ElementTree.parse(result).getroot().iter("testcase") if has_ended(case, ended)]
     if not cases:
         raise ValueError("no test ran")
@@ -66,27 +66,27 @@ def tests(result: Path, ended: Ended) -> Found:
 
 
 def has_ended(case: ElementTree.Element, ended: Ended) -> bool:
-    """Whether a test had come to its end; pytest lists one that was interrupted as if it had, but gives it no time."""
+    """Whether a test ran to its end; pytest lists an interrupted test as if it had, but without a time."""
     return not ended.is_short or float(case.get("time", 0)) > 0 or len(case) > 0
 
 
 def outcome(case: ElementTree.Element) -> str:
-    """What became of a test."""
+    """The result of a test."""
     return "failed" if faults(case) else "passed" if case.find("skipped") is None else "skipped"
 
 
 def faults(case: ElementTree.Element) -> list[ElementTree.Element]:
-    """What is wrong with a test, if anything."""
+    """The failures and errors of a test, if any."""
     return [fault for kind in FAULTS for fault in case.findall(kind)]
 
 
 def reason(case: ElementTree.Element) -> str:
-    """Why a test failed, on one line."""
+    """The reason of a test's failure, in one line."""
     return one_line(faults(case)[0].get("message", ""))[:300]
 
 
 def tune(result: Path, ended: Ended) -> Found:
-    """What ``svgf-cl tune --json`` says: every tuning that was tried, and which is the best."""
+    """The result of ``svgf-cl tune --json``: every tuning that was tried, and the best one."""
     found = read_json(result)
     rows = [
         (
@@ -103,12 +103,12 @@ def tune(result: Path, ended: Ended) -> Found:
 
 
 def figure(value: float | None, spec: str) -> str:
-    """A number, or a dash where there is none."""
+    """A number, or a dash if there is none."""
     return "-" if value is None else format(value, spec)
 
 
 def bench(result: Path, ended: Ended) -> Found:
-    """What ``svgf-cl bench`` says: ceilings, error, and every pass's time; its own report lies beside its JSON."""
+    """The result of ``svgf-cl bench``: ceilings, error, and times of all passes; its own report is beside its JSON."""
     run = Run.read(result)
     shown = [tables.device_table(run), *(tables.benchmark_table(run, device) for device in run.devices)]
     notes = [f"left out: {line}" for line in run.left_out]
@@ -118,7 +118,7 @@ def bench(result: Path, ended: Ended) -> Found:
 
 
 def accuracy(result: Path, ended: Ended) -> Found:
-    """What ``benchmarks.accuracy_page --here`` says: each kernel's largest error against the oracle."""
+    """The result of ``benchmarks.accuracy_page --here``: the largest error of each kernel."""
     if ended.code:
         raise ValueError(f"exit code {ended.code}")
     figures = json.loads(ended.output.splitlines()[-1])

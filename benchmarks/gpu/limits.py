@@ -1,4 +1,4 @@
-"""What makers of GPUs publish of their limits: peaks that no program exceeds, and few reach."""
+"""Limits of GPUs that their makers publish: peaks that no program exceeds, and few reach."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from svgf_cl.bench.ceilings import Ceilings
 
-# Of a compute unit and a clock: 32-bit operations, a multiply-add counted as two; and bytes from its nearest cache
-# (NVIDIA Volta, Ampere, Hopper and Ada whitepapers; AMD RDNA whitepaper: a line of 128 bytes).
+# For a compute unit and a clock: 32-bit operations, where a multiply-add counts as two; and bytes from the nearest
+# cache (NVIDIA Volta, Ampere, Hopper and Ada whitepapers; AMD RDNA whitepaper: a line of 128 bytes).
 OPERATIONS, LOADED = 256, 128
 
 
@@ -19,17 +19,17 @@ class Gpu:
     ----------
     name : str
     architecture : str
-        The nearest that ``benchmarks.gpu_static`` compiles for.
+        The most similar architecture for which ``benchmarks.gpu_static`` compiles.
     units : int
         Streaming multiprocessors (NVIDIA) or compute units (AMD).
     clock : float, Hz
-        Boost.
+        The boost clock.
     memory : float, bytes / s
     cache : int, bytes
-        The last level before memory.
+        The last cache before memory.
     cache_bandwidth : float, bytes / s
     sources : str
-        The documents.
+        The documents that publish the limits.
     """
 
     name: str
@@ -43,27 +43,27 @@ class Gpu:
 
     @property
     def flops(self) -> float:
-        """Single precision operations a second, a multiply-add counted as two."""
+        """Single precision operations per second; a multiply-add counts as two."""
         return OPERATIONS * self.units * self.clock
 
     @property
     def instructions(self) -> float:
-        """Single precision instructions a second, of one work-item each."""
+        """Single precision instructions per second, for one work-item each."""
         return self.flops / 2
 
     @property
     def loads(self) -> float:
-        """Bytes a second from the nearest caches."""
+        """Bytes per second from the nearest caches."""
         return LOADED * self.units * self.clock
 
     @property
     def ceilings(self) -> Ceilings:
-        """The same in the benchmark's words: what exceeds the cache is partly in it, up to twice its size."""
+        """The limits as ceilings of the benchmark; data of up to twice the size of the cache is partly in it."""
         bandwidth = ((self.cache, self.cache_bandwidth), (2 * self.cache, self.memory))
         return Ceilings(bandwidth, aligned_loads=self.loads, offset_loads=self.loads, flops=self.flops)
 
 
-A100_L2 = 5120  # bytes a clock: NVIDIA A100 whitepaper. NVIDIA publishes none for what came later
+A100_L2 = 5120  # bytes per clock: NVIDIA A100 whitepaper. NVIDIA publishes no figure for later GPUs
 
 GPUS = (
     Gpu(
@@ -98,5 +98,6 @@ GPUS = (
     ),
 )
 
-# Bytes a second each way over 16 lanes: 16 and 32 GT/s with 128 of 130 bits (PCI-SIG, PCI Express Base 4.0 and 5.0).
+# Bytes per second in each direction over 16 lanes: 16 and 32 GT/s with 128 of 130 bits (PCI-SIG, PCI Express Base 4.0
+# and 5.0).
 PCI_EXPRESS = {"PCIe 4.0 x16": 16e9 * 16 / 8 * 128 / 130, "PCIe 5.0 x16": 32e9 * 16 / 8 * 128 / 130}

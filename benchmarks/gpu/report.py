@@ -1,4 +1,4 @@
-"""The report of a run: ``report.md`` to read and ``report.json`` for programs, written anew after every step."""
+"""The report of a run: ``report.md`` to read and ``report.json`` for programs; both are rewritten after every step."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from svgf_cl.device.devices import DeviceReport
 from svgf_cl.io.atomic import write_text
 
 PACKAGES = ("pyopencl", "numpy", "pytest")
-# What a driver says of a device, by pyopencl's names.
+# Facts about a device, by pyopencl's names.
 FACTS = (
     *("name", "vendor", "version", "driver_version", "opencl_c_version", "max_compute_units", "max_clock_frequency"),
     *("global_mem_size", "global_mem_cache_size", "local_mem_size", "max_mem_alloc_size", "max_work_group_size"),
@@ -36,7 +36,7 @@ DRY = "This was a dry run: the same steps, with sizes so small that no time in i
 
 @dataclass(frozen=True)
 class Outcome:
-    """A step that has ended."""
+    """A step that has ended, and its result."""
 
     step: Step
     ended: Ended
@@ -44,38 +44,38 @@ class Outcome:
 
     @property
     def state(self) -> str:
-        """In a word or two."""
+        """The result in a word or two."""
         if self.found.complaint:
             return "failed"
         return "cut short" if self.ended.is_short else "done"
 
     @property
     def row(self) -> tuple[str, ...]:
-        """Of the table of steps."""
+        """A row of the table of steps."""
         step, seconds = self.step, f"{self.ended.seconds:.0f} of {self.step.seconds}"
         return step.name, step.title, self.state, seconds, self.found.complaint
 
     def as_json(self) -> dict[str, Any]:
-        """All of it."""
+        """The result as JSON."""
         step = {"name": self.step.name, "title": self.step.title, "command": self.step.command}
         return step | {"state": self.state, "seconds": self.ended.seconds} | asdict(self.found)
 
 
 @dataclass
 class Report:
-    """What is known of a run so far.
+    """The results of a run so far.
 
     Parameters
     ----------
     reports : sequence of DeviceReport
-        Every device that was found.
+        All devices that were found.
     device : DeviceReport
-        The one that the run is for.
+        The device that the run measures.
     dry_run : bool
     outcomes : list of Outcome
-        Of the steps that have ended.
+        The steps that have ended.
     begun : str
-        ISO 8601, UTC.
+        Start of the run, ISO 8601, UTC.
     """
 
     reports: list[DeviceReport]
@@ -91,12 +91,12 @@ class Report:
 
     @property
     def steps(self) -> Table:
-        """What became of each step."""
+        """The result of each step."""
         heads = ("step", "what", "state", "seconds", "why")
         return Table("steps", heads, [each.row for each in self.outcomes])
 
     def write(self, folder: Path) -> None:
-        """Write both files, each whole or not at all."""
+        """Write both files, each completely or not at all."""
         write_text(folder / "report.md", self.page())
         write_text(folder / "report.json", json.dumps(self.as_json(), indent=1))
 
@@ -116,7 +116,7 @@ class Report:
         return "\n".join(parts)
 
     def about(self) -> dict[str, Any]:
-        """What ran, on what, when."""
+        """What ran, on which device, and when."""
         assert self.device.handle is not None
         return {
             **provenance(self.device.handle),
@@ -139,7 +139,7 @@ class Report:
 
 
 def facts(report: DeviceReport) -> dict[str, Any]:
-    """What the driver says of a device; where it cannot, why."""
+    """The driver's information about a device; if the driver fails, the reason."""
     found = {}
     for name in FACTS:
         try:
@@ -157,7 +157,7 @@ def device_table(reports: list[DeviceReport]) -> Table:
 
 
 def section(outcome: Outcome) -> str:
-    """The part of a page that a step makes."""
+    """The section of the page about a step."""
     step, found = outcome.step, outcome.found
     output, errors = (log.name for log in logs(Path(), step.name))
     said = [f"{outcome.state}: {found.complaint}" if found.complaint else "", *found.notes]
@@ -167,10 +167,10 @@ def section(outcome: Outcome) -> str:
 
 
 def escaped(table: Table) -> Table:
-    """A table whose cells stay cells in Markdown."""
+    """The table with its cells escaped for Markdown."""
     return Table(table.title, table.columns, [tuple(map(cell, row)) for row in table.rows])
 
 
 def cell(value: object) -> str:
-    """A value in a line of Markdown."""
+    """A value escaped for a line of Markdown."""
     return " ".join(str(value).replace("|", "\\|").split())

@@ -1,4 +1,4 @@
-"""What GPUs could do at best, from what the filters declare and what makers publish; nothing here is measured.
+"""The best that GPUs could do, computed from the filters' declarations and published limits; nothing is measured.
 
 python -m benchmarks.gpu.roofline                           # prints the tables
 python -m benchmarks.gpu.roofline docs/gpu.md               # writes them into the page
@@ -32,12 +32,12 @@ from svgf_cl.io.atomic import read_json, unreadable, write_text
 SHAPES: tuple[Shape, ...] = ((720, 1280), (1080, 1920), (2160, 3840))
 USUAL: Shape = (1080, 1920)
 FILTERS: tuple[Filter, ...] = (Kalman(), Settings())
-LAUNCH = 5e-6  # seconds until a kernel runs; assumed, and as long on any device as its driver takes
+LAUNCH = 5e-6  # seconds to launch a kernel; assumed, because this depends on the driver
 MARKS = "<!-- From here on made by `python -m benchmarks.gpu.roofline {}`; do not edit. -->", "<!-- Down to here. -->"
 COUNTS = "--counts out/gpu_static/kernels.json"  # what `make gpu-static` writes
 
 Change = Callable[[Pass], Pass]
-Counts = Mapping[tuple[str, str, str], int]  # instructions a pixel by filter, kernel and architecture
+Counts = Mapping[tuple[str, str, str], int]  # instructions per pixel by filter, kernel and architecture
 
 
 @dataclass(frozen=True)
@@ -48,11 +48,11 @@ class Bounded:
     ----------
     entry : Pass
     spent : Cost
-        Of a pixel.
+        The cost per pixel.
     bound : Bound
-        Of an image.
+        The bound for an image.
     working_set : float, bytes
-        Touched between a byte's writing and its reading.
+        The bytes used between the writing of a byte and its reading.
     """
 
     entry: Pass
@@ -62,12 +62,12 @@ class Bounded:
 
 
 def unchanged(entry: Pass) -> Pass:
-    """The pass as it is."""
+    """The pass without changes."""
     return entry
 
 
 def bounded(chosen: Filter, shape: Shape, gpu: Gpu, change: Change = unchanged) -> list[Bounded]:
-    """Every pass of a filter with its bound; the first comes after the last of the frame before."""
+    """All passes of a filter with their bounds; the pass before the first one is the last of the previous frame."""
     passes = [change(entry) for entry in chosen.pipeline(ROOM).passes]
     spent = [cost(entry) for entry in passes]
     whole = [each * (shape[0] * shape[1]) for each in spent]
@@ -78,12 +78,12 @@ def bounded(chosen: Filter, shape: Shape, gpu: Gpu, change: Change = unchanged) 
 
 
 def seconds(chosen: Filter, shape: Shape, gpu: Gpu, change: Change = unchanged) -> float:
-    """The least time of a frame."""
+    """The shortest possible time of a frame."""
     return sum(each.bound.seconds for each in bounded(chosen, shape, gpu, change))
 
 
 def octahedral(entry: Pass) -> Pass:
-    """A pass whose normals lie in one plane of two 16-bit numbers, where three planes of 32 bits hold them."""
+    """The pass with normals in one plane of two 16-bit numbers, instead of three planes of 32 bits."""
 
     def packed(each: Access) -> Access:
         if not isinstance(each.of, Buffer):
@@ -98,7 +98,7 @@ def octahedral(entry: Pass) -> Pass:
 
 
 def limits() -> Table:
-    """What is published of each GPU."""
+    """The published limits of each GPU."""
     heads = ("GPU", "memory GB/s", "cache MB", "cache GB/s", "nearest caches GB/s", "TFLOP/s", "sources")
     rows = [
         (
@@ -114,7 +114,7 @@ def limits() -> Table:
 
 
 def passes(chosen: Filter) -> Table:
-    """Each pass: what it costs a pixel, and its bound on each GPU."""
+    """Each pass: its cost per pixel, and its bound on each GPU."""
     found = [bounded(chosen, USUAL, gpu) for gpu in GPUS]
     rows = []
     for same in zip(*found, strict=True):
@@ -134,7 +134,7 @@ def passes(chosen: Filter) -> Table:
 
 
 def frames() -> Table:
-    """A frame's bound at each size, beside what launching takes."""
+    """The bound of a frame at each size, and the time for launches."""
     rows = []
     for chosen in FILTERS:
         for shape in SHAPES:
@@ -152,12 +152,12 @@ def frames() -> Table:
 
 
 def in_cache(column: Sequence[Bounded], gpu: Gpu) -> str:
-    """How many passes find in the cache what the pass before wrote."""
+    """How many passes find the output of the previous pass in the cache."""
     return f"{sum(each.working_set <= gpu.cache for each in column)} of {len(column)} in cache"
 
 
 def changes() -> Table:
-    """What other storage would do to the bytes and the bound of a frame."""
+    """The bytes and the bound of a frame with other storage."""
     options: dict[str, tuple[Filter, Change]] = {
         "as it is": (Kalman(), unchanged),
         "`half_guides` (an option)": (Kalman(half_guides=True), unchanged),
@@ -177,9 +177,9 @@ def changes() -> Table:
 
 
 def reuse() -> Table:
-    """How much of what its work-items load a work-group needs: a tile in local memory would load each of it once.
+    """The share of the loads of a work-group that are distinct: a tile in local memory would load each pixel once.
 
-    The rows of a work-group are a level's step apart, as are its taps.
+    The rows of a work-group are one step of the level apart, as its taps are.
     """
     along, down = GPU_TUNING.work_group
     pixels = USUAL[0] * USUAL[1]
@@ -206,13 +206,13 @@ def reuse() -> Table:
 
 
 def distinct(use: Use, along: int, down: int, row_step: int) -> int:
-    """Pixels that a work-group reads of a quantity."""
+    """The number of distinct pixels of a quantity that a work-group reads."""
     items = [(x, y * row_step) for x in range(along) for y in range(down)]
     return len({(x + dx, y + dy) for x, y in items for dx, dy in use.taps.offsets})
 
 
 def uploads() -> Table:
-    """What moving a frame's arrays to the device and the picture back takes over the bus."""
+    """The time for copying a frame's arrays to the device and the picture back, over the bus."""
     by_name = Kalman().pipeline(ROOM).user_nbytes
     sent = sum(nbytes for name, nbytes in by_name.items() if name != OUT)
     rows = [
@@ -228,7 +228,7 @@ def uploads() -> Table:
 
 
 def instructions(chosen: Filter, counts: Counts) -> Table:
-    """Instructions of each pass as compiled, and the least time that issuing them takes, beside the roofline's."""
+    """Compiled instructions of each pass, and the shortest time to issue them, beside the roofline's time."""
     found = [bounded(chosen, USUAL, gpu) for gpu in GPUS]
     pixels = USUAL[0] * USUAL[1]
     rows = []
@@ -249,14 +249,14 @@ def instructions(chosen: Filter, counts: Counts) -> Table:
 
 
 def read_counts(path: Path) -> tuple[Counts, str]:
-    """Read what ``benchmarks.gpu_static`` has counted: instructions, each filter's by default, and the compilers.
+    """Read the instruction counts of ``benchmarks.gpu_static`` for default filters, and the versions of the compilers.
 
-    Kernels that several filters share are counted once, under the name of any of them.
+    Kernels that several filters share are counted once, under the name of one of them.
 
     Raises
     ------
     FileError
-        If it cannot be read or is another file.
+        If it cannot be read or is another kind of file.
     """
     try:
         document = read_json(path)
@@ -264,7 +264,8 @@ def read_counts(path: Path) -> tuple[Counts, str]:
         found: dict[tuple[str, str, str], int] = {}
         for chosen in FILTERS:
             own = f"{chosen.name} by default"
-            for entry in sorted(entries, key=lambda entry: not entry["variant"].startswith(own)):  # its own first
+            # the filter's own first
+            for entry in sorted(entries, key=lambda entry: not entry["variant"].startswith(own)):
                 place = (chosen.name, entry["kernel"], entry["architecture"])
                 found.setdefault(place, int(entry["instructions"]["total"]))
     except OSError as error:
@@ -277,7 +278,7 @@ def read_counts(path: Path) -> tuple[Counts, str]:
 
 
 def all_tables() -> Iterator[Table]:
-    """Everything that takes no counts, in the page's order."""
+    """All tables that need no counts, in the order of the page."""
     yield from (limits(), frames(), *map(passes, FILTERS), changes(), reuse(), uploads())
 
 
@@ -287,7 +288,7 @@ def text(tables: Sequence[Table]) -> str:
 
 
 def put(page: str, arguments: str, made: str) -> str:
-    """The page with what was made in place of what stands between the marks for these arguments."""
+    """Replace the text between the marks for these arguments by `made`."""
     begin, end = MARKS[0].format(arguments), MARKS[1]
     before, found, rest = page.partition(begin)
     _, closed, after = rest.partition(end)

@@ -1,4 +1,4 @@
-"""The steps of a run, each a command of the project in a process of its own, with its share of the time."""
+"""The steps of a run. Each is a command of the project that runs in its own process, with a time limit."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from benchmarks.gpu.findings import Found
 from benchmarks.suites import KERNELS, ON_A_DEVICE
 from svgf_cl.device.apart import summary
 
-LONGEST = 600  # seconds that a run may take in all
+LONGEST = 600  # seconds for the whole run
 
-# Tests that are not among KERNELS: hard inputs, sizes, thousands of frames.
+# Tests that are not in KERNELS: hard inputs, sizes, thousands of frames.
 HARD = tuple(name for name in ON_A_DEVICE if name not in KERNELS)
 PYTEST = ("pytest", "-n", "auto", "--maxprocesses", "8", "-q", "-p", "no:cacheprovider")
 
@@ -24,21 +24,21 @@ SVGF = r"svgf\.(demodulate|temporal|variance|atrous|modulate|frame|enqueue)"
 
 @dataclass(frozen=True)
 class Step:
-    """A part of a run.
+    """A step of a run.
 
     Parameters
     ----------
     name : str
-        Of its files.
+        The name of its files.
     title : str
     command : tuple of str
         A module and its arguments.
-    seconds : int
+    Its time limit.
         It is stopped after so long.
     result : Path
-        What it writes.
+        The file that it writes.
     read : callable
-        Makes tables of that; whatever it raises where it is something else is told.
+        Makes tables from that file; errors of reading a wrong file are reported.
     """
 
     name: str
@@ -49,15 +49,15 @@ class Step:
     read: Callable[[Path, Ended], Found]
 
     def found(self, ended: Ended) -> Found:
-        """What it found; where that cannot be read, why."""
+        """The result; if it cannot be read, the reason."""
         try:
             return self.read(self.result, ended)
-        except (ValueError, LookupError, TypeError, OSError, SyntaxError) as error:  # the last of ElementTree
+        except (ValueError, LookupError, TypeError, OSError, SyntaxError) as error:  # SyntaxError is from ElementTree
             return Found(complaint=complaint(self, ended, error))
 
 
 def complaint(step: Step, ended: Ended, error: Exception) -> str:
-    """Why a step has no result."""
+    """The reason why a step has no result."""
     if ended.is_short:
         return f"no result within {step.seconds} s; it was stopped"
     said = summary(ended.errors or ended.output)
@@ -78,7 +78,7 @@ def full(folder: Path) -> list[Step]:
 
 
 def dry(folder: Path) -> list[Step]:
-    """The same steps, brief: for a CPU in CI."""
+    """The same steps with small sizes: for a CPU in CI."""
     size, sizes = "64x36", ("--size", "64x36")
     brief = ("--seconds", "0", *sizes, "--only", rf"\.{size}$")
     return [
@@ -104,38 +104,38 @@ def dry(folder: Path) -> list[Step]:
 
 
 def tests(name: str, title: str, chosen: tuple[str, ...], folder: Path, seconds: int) -> Step:
-    """Tests against the oracle."""
+    """A step that compares kernels with the oracle by tests."""
     result = folder / f"{name}.xml"
     return Step(name, title, (*PYTEST, f"--junitxml={result}", *chosen), seconds, result, findings.tests)
 
 
 def tune(folder: Path, options: tuple[str, ...], seconds: int) -> Step:
-    """The search for the fastest tuning, which later runs use."""
+    """A step that searches for the fastest tuning and stores it for later runs."""
     result = folder / "tune.json"
     command = ("svgf_cl", "tune", *options, "--json", str(result))
     return Step("tune", "the fastest tuning", command, seconds, result, findings.tune)
 
 
 def bench(name: str, options: tuple[str, ...], folder: Path, seconds: int) -> Step:
-    """The benchmark of one filter."""
+    """A step that benchmarks one filter."""
     command = ("svgf_cl", "bench", "-o", str(folder / name), *options)
     filter_ = "SVGF" if "svgf" in options else "the default filter"
     return Step(name, f"times of {filter_}", command, seconds, folder / name / "results.json", findings.bench)
 
 
 def accuracy(folder: Path, options: tuple[str, ...], seconds: int) -> Step:
-    """Each kernel's largest error."""
+    """A step that measures the largest error of each kernel."""
     command = ("benchmarks.accuracy_page", HERE, *options)
     return Step("accuracy", "each kernel's error", command, seconds, logs(folder, "accuracy")[0], findings.accuracy)
 
 
 def logs(folder: Path, name: str) -> tuple[Path, Path]:
-    """Where a step's stdout and stderr go."""
+    """The files for a step's stdout and stderr."""
     return folder / f"{name}.out.txt", folder / f"{name}.err.txt"
 
 
 def run(step: Step, folder: Path, environment: dict[str, str], tick: Callable[[float], None]) -> tuple[Ended, Found]:
-    """Run a step and read what it found; what an earlier run has left is not taken for it."""
+    """Run a step and read its result; results of an earlier run are deleted first."""
     step.result.unlink(missing_ok=True)
     ended = child.run(step.command, step.seconds, logs(folder, step.name), environment, tick)
     return ended, step.found(ended)

@@ -1,1 +1,1 @@
-"""What compilers for GPUs make of the kernels, held to limits on machines without a GPU."""
+"""Compiles the kernels for GPUs and checks limits, on machines without a GPU."""

@@ -1,4 +1,4 @@
-"""``python -m benchmarks.gpu_static``: what compilers for GPUs make of every kernel; a gate that needs no GPU."""
+"""``python -m benchmarks.gpu_static``: compiles every kernel for GPUs and checks limits; it needs no GPU."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from svgf_cl.bench.results import commit_info
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.io.atomic import output_folder, write_text
 
-ADDRESSED = "atrous/atrous"  # the kernel of most taps: how much of it computes addresses
+ADDRESSED = "atrous/atrous"  # the kernel with the most taps, for which the share of address arithmetic is shown
 TITLE = "registers, occupancy and instructions of each kernel in its most usual variant"
 SUMMARY = ("kernel", *gate.ARCHITECTURES)
-SHOWN = 20  # faults; a broken header breaks every kernel
+SHOWN = 20  # the most faults to print; a broken header breaks every kernel
 
 
 def gpu_static(
@@ -47,7 +47,7 @@ def gpu_static(
     print(integer(rows))
     print(f"{len(builds)} variants for {len(gate.TARGETS)} targets, compiled in {time.monotonic() - start:.0f} s")
     print(f"{folder}: kernels.json, kernels.md, summary.md")
-    if record and not refused:  # registers of what does not compile are not known
+    if record and not refused:  # the registers of a kernel that does not compile are unknown
         budgets.record(budgets.FILE, rows, compilers.versions)
         print(f"recorded in {budgets.FILE}")
     elif not record:
@@ -58,7 +58,7 @@ def gpu_static(
 
 
 def over_budget(rows: Sequence[gate.Row], versions: Mapping[str, str]) -> list[str]:
-    """What breaks the recorded budgets, and whether other compilers may be why."""
+    """The kernels that exceed the recorded budgets, and a note if the compilers differ."""
     recorded, compilers = budgets.read(budgets.FILE)
     faults = list(budgets.exceeded(rows, recorded))
     others = [f"{name} {versions[name]} is not {then}" for name, then in compilers.items() if versions[name] != then]
@@ -68,7 +68,7 @@ def over_budget(rows: Sequence[gate.Row], versions: Mapping[str, str]) -> list[s
 
 
 def about(versions: Mapping[str, str]) -> dict[str, str]:
-    """What was compiled, by what, when."""
+    """What was compiled, with which compilers, and when."""
     commit = commit_info()
     changed = " with changes" if commit["dirty"] else ""
     return {
@@ -88,12 +88,12 @@ def write(folder: Path, rows: Sequence[gate.Row], about: Mapping[str, str]) -> N
 
 
 def integer(rows: Sequence[gate.Row]) -> str:
-    """How much of the a-trous filter computes addresses."""
+    """The share of address arithmetic in the a-trous filter."""
     return f"integer arithmetic in {ADDRESSED}: {tables.integer_share(rows, ADDRESSED)} of its instructions"
 
 
 def report(faults: Sequence[str]) -> None:
-    """Print faults, the first ones in whole."""
+    """Print faults, the first ones completely."""
     print(f"\ngpu_static: {len(faults)} faults")
     for fault in faults[:SHOWN]:
         print(f"- {fault}")

@@ -1,4 +1,4 @@
-"""Compiles kernels for AMD's GPUs: by clang to assembly, whose metadata tells what drivers allocate."""
+"""Compiles kernels for AMD's GPUs: clang writes assembly, whose metadata has the registers that drivers allocate."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from benchmarks.gpu_static.usage import (
     written,
 )
 
-# RDNA 2 (32 work-items a wave), RDNA 3 (32), CDNA 2 (64); and the number by which AMD's library knows each, 1000 major
-# + 100 minor + stepping. The library brings a file with this number for each architecture, but Debian 12's has none for
-# gfx1100: it is defined here for all of them alike.
+# RDNA 2 (waves of 32 work-items), RDNA 3 (32) and CDNA 2 (64), with the numbers of these architectures in AMD's
+# library: 1000 major + 100 minor + stepping. The library has a file with this number for each architecture, but Debian
+# 12's has none for gfx1100. So the number is defined here for all of them.
 ARCHITECTURES = {"gfx1030": 10300, "gfx1100": 11000, "gfx90a": 9010}
 WAVES_OF_64 = ("gfx90a",)
 
 TARGET = ("-O3", "-target", "amdgcn-amd-amdhsa", "-mcode-object-version=5", "-nogpulib")
-# AMD's library, and constants by which it is told what svgf_cl.device.programs.OPTIONS and OpenCL's defaults ask for.
+# AMD's library, and constants that give it the options of svgf_cl.device.programs.OPTIONS and OpenCL's defaults.
 LIBRARY = ("opencl", "ocml", "ockl")
 CHOICES = ("daz_opt_on", "finite_only_off", "unsafe_math_off", "correctly_rounded_sqrt_off", "abi_version_500")
 
@@ -35,18 +35,18 @@ BODY = r"^{name}:.*?$(.*?)^\.Lfunc_end"
 INSTRUCTION = re.compile(r"^\t([a-z]\w+)", re.MULTILINE)
 KERNELS = re.compile(r"^amdhsa\.kernels:\n(.*?)^\S", re.DOTALL | re.MULTILINE)
 FIELD = re.compile(r"^(?:    |  - )\.(\w+): +(\S+)", re.MULTILINE)
-PADDING = "s_code_end"  # fetched, and never run
+PADDING = "s_code_end"  # fetched, but never executed
 LOADS, STORES = r"(?:global|flat|buffer)_load_", r"(?:global|flat|buffer)_store_"
 INTEGER = r"[sv]_(?:add|sub|mul|mad|lsh|ashr)\w*_[iub]\d+(?:_e\d+)?$"
 
 
 def compiled(tools: Tools, architecture: str, build: Build, folder: Path) -> dict[str, Compiled]:
-    """Compile a build and return its kernels by name, with assembly.
+    """Compile a build and return its kernels by name, with their assembly.
 
     Raises
     ------
     RejectedError
-        A tool refused it.
+        If a tool refuses it.
     """
     assembly = folder / "kernel.s"
     waves = f"wavefrontsize64_{'on' if architecture in WAVES_OF_64 else 'off'}"
@@ -59,12 +59,12 @@ def compiled(tools: Tools, architecture: str, build: Build, folder: Path) -> dic
 
 
 def parse(assembly: str) -> dict[str, Compiled]:
-    """Read what clang says of the kernels in a file of assembly.
+    """Read clang's metadata about the kernels in a file of assembly.
 
     Raises
     ------
     RejectedError
-        It says nothing that can be read.
+        If there is no such metadata.
     """
     metadata = KERNELS.search(assembly)
     entries = re.split(r"^(?=  - )", metadata[1] if metadata else "", flags=re.MULTILINE)
@@ -75,7 +75,7 @@ def parse(assembly: str) -> dict[str, Compiled]:
 
 
 def usage(entry: Mapping[str, str]) -> Usage:
-    """What a kernel takes, from its entry of the metadata."""
+    """The registers and memory of a kernel, from its entry in the metadata."""
     return Usage(
         registers=int(entry["vgpr_count"]),
         scalars=int(entry["sgpr_count"]),

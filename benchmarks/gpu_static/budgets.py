@@ -1,4 +1,4 @@
-"""Registers that each kernel may take on each architecture, as recorded: the most of all its variants."""
+"""The recorded budgets: for each kernel and architecture, the most registers that any of its variants needed."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from svgf_cl.io.atomic import read_json, unreadable, write_text
 
 FILE = Path(__file__).with_name("budgets.json")
 RECORD = "'python -m benchmarks.gpu_static --record' records what is found"
-COMPILERS = "compilers"  # beside the kernels: what they were compiled with
+COMPILERS = "compilers"  # the key of the compilers' versions, beside those of the kernels
 
-Budgets = Mapping[str, Mapping[str, int]]  # registers by architecture, by kernel
+Budgets = Mapping[str, Mapping[str, int]]  # registers by architecture, for each kernel
 
 
 def of(rows: Iterable[Row]) -> dict[str, dict[str, int]]:
@@ -27,7 +27,7 @@ def of(rows: Iterable[Row]) -> dict[str, dict[str, int]]:
 
 
 def exceeded(rows: Iterable[Row], budgets: Budgets) -> Iterator[str]:
-    """Every row that takes more than its budget, and every budget that is missing or of no kernel."""
+    """Rows that exceed their budgets, and budgets that are missing or that belong to no kernel."""
     rows = list(rows)
     for row in rows:
         budget = budgets.get(row.name, {}).get(row.architecture)
@@ -45,17 +45,17 @@ def exceeded(rows: Iterable[Row], budgets: Budgets) -> Iterator[str]:
 
 
 def pairs(budgets: Budgets) -> set[tuple[str, str]]:
-    """Kernels and architectures that have a budget."""
+    """Kernels and architectures with a budget."""
     return {(name, architecture) for name, by_architecture in budgets.items() for architecture in by_architecture}
 
 
 def read(path: Path) -> tuple[Budgets, Mapping[str, str]]:
-    """Read budgets, and the versions of compilers with which they were recorded.
+    """Read budgets, and the versions of the compilers with which they were recorded.
 
     Raises
     ------
     FileError
-        It cannot be read, or holds something else.
+        If it cannot be read, or contains something else.
     """
     try:
         document = read_json(path)
@@ -72,7 +72,7 @@ def read(path: Path) -> tuple[Budgets, Mapping[str, str]]:
 
 
 def record(path: Path, rows: Iterable[Row], compilers: Mapping[str, str]) -> None:
-    """Write what is found as budgets, a kernel a line."""
+    """Write the registers found as budgets, one kernel per line."""
     entries = {COMPILERS: dict(compilers), **of(rows)}
     lines = ",\n".join(f" {json.dumps(name)}: {json.dumps(entry)}" for name, entry in entries.items())
     write_text(path, f"{{\n{lines}\n}}\n")

@@ -1,4 +1,4 @@
-"""Compiles every variant for every target, and tells what is wrong with any."""
+"""Compiles every variant for every target, and finds violations."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ WORK_GROUP = GPU_TUNING.work_group[0] * GPU_TUNING.work_group[1]
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of one build on one target: its kernels by name, none of SPIR-V, or why it was refused."""
+    """The result of one build on one target: its kernels by name (none for SPIR-V), or why it was refused."""
 
     build: Build
     target: str
@@ -44,21 +44,21 @@ class Row:
 
     @property
     def name(self) -> str:
-        """The kernel behind its file."""
+        """The names of the file and the kernel."""
         return f"{self.source}/{self.kernel}"
 
     @property
     def occupancy(self) -> float:
-        """With the work-groups that GPUs are given by default, 0..1."""
+        """Occupancy with the default work-groups for GPUs, 0..1."""
         return LIMITS[self.architecture].occupancy(self.usage, WORK_GROUP)
 
     @property
     def place(self) -> str:
-        """Which it is, for messages."""
+        """The kernel, variant and architecture, for messages."""
         return f"kernel {self.kernel} of {self.source}.cl on {self.architecture} ({self.variant})"
 
     def faults(self) -> Iterator[str]:
-        """What no kernel may do on any architecture."""
+        """Violations of limits that hold on every architecture."""
         if self.usage.spills:
             unit = "bytes of registers" if self.architecture in nvidia.ARCHITECTURES else "registers"
             yield (
@@ -73,7 +73,10 @@ class Row:
 
 
 def compile_all(tools: Tools, builds: Sequence[Build], advance: Callable[[], None]) -> list[Outcome]:
-    """Compile every build for every target, as many at a time as there are processors; in the order of the builds."""
+    """Compile every build for every target, in as many threads as processors.
+
+    Results are in the order of the builds.
+    """
 
     def compiled(job: tuple[Build, str]) -> Outcome:
         outcome = compile_one(tools, *job)
@@ -96,7 +99,7 @@ def compile_one(tools: Tools, build: Build, target: str) -> Outcome:
 
 
 def kernels(tools: Tools, build: Build, target: str, folder: Path) -> dict[str, Compiled]:
-    """The kernels of a build on a target; of SPIR-V nothing is known but that it is valid."""
+    """The kernels of a build on a target; for SPIR-V only the validity is checked."""
     if target == spirv.NAME:
         spirv.validate(tools, build, folder)
         return {}
@@ -106,7 +109,7 @@ def kernels(tools: Tools, build: Build, target: str, folder: Path) -> dict[str, 
 
 
 def rows(tools: Tools, outcomes: Sequence[Outcome]) -> list[Row]:
-    """A row for every kernel that was compiled, architecture by architecture."""
+    """A row for every compiled kernel, architecture by architecture."""
     found = []
     for architecture in ARCHITECTURES:
         every = [

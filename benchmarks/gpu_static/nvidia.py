@@ -1,4 +1,4 @@
-"""Compiles kernels for NVIDIA's GPUs: by clang to PTX, by ptxas to machine code, by nvdisasm to text."""
+"""Compiles kernels for NVIDIA's GPUs: clang writes PTX, ptxas machine code, and nvdisasm its text."""
 
 from __future__ import annotations
 
@@ -27,36 +27,36 @@ from benchmarks.gpu_static.usage import (
 ARCHITECTURES = ("sm_75", "sm_90")  # Turing, Hopper
 
 TARGET = ("-O3", "-target", "nvptx64-nvidia-nvcl", *passed("-target-feature", "+ptx78"))
-# What -cl-denorms-are-zero and OpenCL's precision (a quotient within 2.5 ulp, a root within 3) mean to the driver;
-# clang does neither for this target unless it is told.
+# What -cl-denorms-are-zero and OpenCL's precision (quotients within 2.5 ulp, roots within 3) mean for the driver; clang
+# needs these options to do the same for this target.
 PRECISION = (
     *("-Xclang", "-fdenormal-fp-math-f32=preserve-sign"),
     *("-mllvm", "-nvptx-prec-divf32=1", "-mllvm", "-nvptx-prec-sqrtf32=0"),
 )
-# NVIDIA's OpenCL computes 2^x by one instruction of the hardware, within the 4 ulp that OpenCL allows. Debian's libclc
-# writes the function out, in 20 instructions, and every weight of a filter has one.
+# NVIDIA's OpenCL computes 2^x by one hardware instruction, within the 4 ulp that OpenCL allows. Debian's libclc
+# computes it in 20 instructions instead, and every weight of a filter needs one.
 FUNCTIONS = "float __attribute__((overloadable)) exp2(float x) { return __nvvm_ex2_approx_ftz_f(x); }\n"
-# clang says that it ignores -cl-denorms-are-zero, and that the library is for another vendor's triple.
+# clang warns that it ignores -cl-denorms-are-zero, and that the library is for another vendor's triple.
 QUIET = ("-Wno-unused-command-line-argument", "-Wno-linker-warnings")
 
 ENTRY = re.compile(r"Compiling entry function '(\w+)'(.*?)(?=Compiling entry function|\Z)", re.DOTALL)
 STACK = re.compile(r"(\d+) bytes stack frame, (\d+) bytes spill stores, (\d+) bytes spill loads")
 REGISTERS = re.compile(r"Used (\d+) registers")
-# An address, a predicate if there is one, and the instruction.
+# An address, an optional predicate, and the instruction.
 INSTRUCTION = re.compile(r"^\s+/\*[0-9a-f]{4,}\*/\s+(?:@!?U?P\w+\s+)?([A-Z][A-Z0-9_.]*)", re.MULTILINE)
-BYTES = 16  # of an instruction, since Volta
+BYTES = 16  # bytes of an instruction, since Volta
 PADDING = "NOP"
 LOADS, STORES = r"LDG?\b", r"STG?\b"
 INTEGER = r"U?(?:V?IADD3?|IMAD(?!\.MOV)|LEA|SHF|SHL|SHR)(?:\.|$)"
 
 
 def compiled(tools: Tools, architecture: str, build: Build, folder: Path) -> dict[str, Compiled]:
-    """Compile a build and return its kernels by name, with machine code.
+    """Compile a build and return its kernels by name, with their machine code.
 
     Raises
     ------
     RejectedError
-        A tool refused it.
+        If a tool refuses it.
     """
     ptx, binary = folder / "kernel.ptx", folder / "kernel.cubin"
     library = passed("-mlink-builtin-bitcode", str(tools.libclc))
@@ -68,7 +68,7 @@ def compiled(tools: Tools, architecture: str, build: Build, folder: Path) -> dic
 
 
 def section(binary: Path, name: str) -> bytes:
-    """What a section of an ELF file holds."""
+    """The content of a section of an ELF file."""
     with binary.open("rb") as file:
         found = ELFFile(file).get_section_by_name(name)
         if found is None:
@@ -77,12 +77,12 @@ def section(binary: Path, name: str) -> bytes:
 
 
 def parse(report: str) -> dict[str, Usage]:
-    """Read what ``ptxas -v`` says of the kernels in a file.
+    """Read the output of ``ptxas -v`` about the kernels in a file.
 
     Raises
     ------
     RejectedError
-        It says nothing that can be read.
+        If there is no such output.
     """
     found = {}
     for name, said in ENTRY.findall(report):
@@ -97,12 +97,12 @@ def parse(report: str) -> dict[str, Usage]:
 
 
 def instructions(tools: Tools, architecture: str, codes: Sequence[bytes]) -> list[Instructions]:
-    """Count the instructions of kernels; of all at once, as nvdisasm takes a third of a second to start.
+    """Count the instructions of kernels, all in one run, because nvdisasm takes a third of a second to start.
 
     Raises
     ------
     RejectedError
-        Nvdisasm fails, or lists more or fewer instructions than there are.
+        If nvdisasm fails, or if the number of listed instructions is wrong.
     """
     if not codes:
         return []

@@ -1,7 +1,7 @@
-"""How many waves of a kernel run side by side, from the limits that vendors publish.
+"""How many waves of a kernel run at the same time, computed from limits that vendors publish.
 
 NVIDIA's warps are called waves here, too. A multiprocessor (NVIDIA), compute unit (AMD's CDNA) or work-group processor
-(RDNA) holds whole work-groups and has four schedulers, each with registers of its own:
+(RDNA) runs whole work-groups. It has four schedulers, each with its own registers:
 
     waves of a scheduler = min(most waves, floor(registers / registers of a wave, rounded up to the granule))
     groups               = min(most groups, floor(4 waves of a scheduler / waves of a group))
@@ -28,13 +28,13 @@ class Limits:
     Parameters
     ----------
     wave : int
-        Work-items that run in step.
+        Work-items of a wave.
     most_waves, most_groups : int
-        Waves of a scheduler; work-groups of what has four schedulers.
+        The most waves of a scheduler, and the most work-groups of four schedulers.
     registers, granule : int
-        32-bit registers of a scheduler for each work-item of a wave, and how many are allocated at a time.
+        32-bit registers of a scheduler for each work-item of a wave, and the number that is allocated at a time.
     scalars, scalar_granule : int
-        The same of registers of a whole wave, where these are shared by waves; 0 elsewhere.
+        The same for registers of a whole wave, if waves share them; otherwise 0.
     """
 
     wave: int
@@ -46,14 +46,14 @@ class Limits:
     scalar_granule: int = 1
 
     def waves(self, usage: Usage) -> int:
-        """Waves of a scheduler that have room in its registers."""
+        """The number of waves whose registers fit in a scheduler."""
         room = [self.most_waves, self.registers // rounded_up(usage.registers, self.granule)]
         if self.scalars and usage.scalars:
             room.append(self.scalars // rounded_up(usage.scalars, self.scalar_granule))
         return min(room)
 
     def occupancy(self, usage: Usage, group: int) -> float:
-        """Share of the most waves that run side by side, 0..1, for work-groups of `group` work-items."""
+        """The waves that run, as a share of the most that can, 0..1, for work-groups of `group` work-items."""
         waves_of_group = -(-group // self.wave)
         groups = min(self.most_groups, SCHEDULERS * self.waves(usage) // waves_of_group)
         return groups * waves_of_group / (SCHEDULERS * self.most_waves)
@@ -69,5 +69,5 @@ LIMITS = {
 
 
 def rounded_up(count: int, granule: int) -> int:
-    """The least multiple of `granule` that is at least `count`, and not 0."""
+    """The least multiple of `granule` that is at least `count` and greater than 0."""
     return max(1, -(-count // granule)) * granule

@@ -1,4 +1,4 @@
-"""Compiles kernels to SPIR-V 1.2 or earlier, for OpenCL 1.2, and has the modules validated."""
+"""Compiles kernels to SPIR-V 1.2 or earlier, for OpenCL 1.2, and validates the modules."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from benchmarks.gpu_static.tools import Tools
 from benchmarks.gpu_static.usage import language, said_by, written
 
 NAME = "SPIR-V"
-# Optimised code holds what SPIR-V has no word for. Functions that C99 calls inline get import linkage unless they are
-# static, and a module that imports them is not valid alone.
+# Without optimisation, because optimised code has operations that SPIR-V lacks. Inline functions of C99 get import
+# linkage unless they are static, and a module with imports is not valid alone.
 TARGET = ("-target", "spir64-unknown-unknown", "-O1", "-Xclang", "-disable-llvm-passes", "-Dinline=static")
 QUIET = ("-Wno-unused-command-line-argument",)
 VERSION, ENVIRONMENT = "1.2", "opencl1.2"
@@ -22,7 +22,7 @@ def validate(tools: Tools, build: Build, folder: Path) -> None:
     Raises
     ------
     RejectedError
-        A tool refused it.
+        If a tool refuses it.
     """
     bitcode, module = folder / "kernel.bc", folder / "kernel.spv"
     said_by(

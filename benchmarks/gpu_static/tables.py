@@ -1,4 +1,4 @@
-"""Results as text: every kernel in every variant, and each kernel in its most usual one."""
+"""Results as text: all kernels in all variants, and each kernel in its most usual variant."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ COUNTED = ("loads", "stores", "integer")
 
 
 def document(rows: Iterable[Row], about: Mapping[str, str]) -> str:
-    """Everything as JSON."""
+    """All results as JSON."""
     entries = [asdict(row) | {"occupancy": row.occupancy} for row in rows]
     return json.dumps({"about": dict(about), "kernels": entries}, indent=1)
 
 
 def every(rows: Iterable[Row]) -> list[list[str]]:
-    """A row each, for `COLUMNS` and `COUNTED`."""
+    """A row for each kernel and variant, with `COLUMNS` and `COUNTED`."""
     return [
         [
             row.name,
@@ -38,14 +38,17 @@ def every(rows: Iterable[Row]) -> list[list[str]]:
 
 
 def usual(rows: Sequence[Row]) -> list[list[str]]:
-    """Each kernel in the first variant that has it, an architecture a column: registers, occupancy, instructions."""
+    """Each kernel in the first variant that has it.
+
+    A column for each architecture: registers, occupancy, instructions.
+    """
     first = most_usual(rows)
     names = dict.fromkeys(row.name for row in rows)
     return [[name, *(cell(first.get((name, each))) for each in ARCHITECTURES)] for name in names]
 
 
 def integer_share(rows: Sequence[Row], name: str) -> str:
-    """How much of a kernel's instructions is integer arithmetic, on each architecture."""
+    """The share of integer arithmetic in a kernel's instructions, on each architecture."""
     counted = {row.architecture: row.instructions for row in most_usual(rows).values() if row.name == name}
     return ", ".join(f"{architecture} {each.integer / each.total:.0%}" for architecture, each in counted.items())
 
@@ -59,7 +62,7 @@ def most_usual(rows: Sequence[Row]) -> dict[tuple[str, str], Row]:
 
 
 def cell(row: Row | None) -> str:
-    """A row in short; nothing where the kernel did not compile."""
+    """The cell of a row; empty if the kernel did not compile."""
     return f"{row.usage.registers}, {row.occupancy:.0%}, {row.instructions.total}" if row else ""
 
 

@@ -1,6 +1,6 @@
-"""The compilers for GPUs: where each is found, and how to install what is missing.
+"""The compilers for GPUs: how to find them, and how to install missing ones.
 
-As a program: names those that are missing; exit code 1 if there are any. `scripts/set_up gpu_compilers` installs them.
+As a program it lists the missing ones; the exit code is then 1. `scripts/set_up gpu-compilers` installs them.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from pathlib import Path
 
 from svgf_cl.errors import SvgfError, install_extra
 
-CLANGS = range(19, 30)  # 19 is the first whose OpenCL is right for all these targets
-SPIRV_CLANGS = range(15, 30)  # each writes SPIR-V by the llvm-spirv of its own version
+CLANGS = range(19, 30)  # 19 is the first version whose OpenCL is correct for all these targets
+SPIRV_CLANGS = range(15, 30)  # each writes SPIR-V with the llvm-spirv of its own version
 
-# Of NVIDIA's library for OpenCL C, and AMD's.
+# The folders of NVIDIA's and AMD's libraries for OpenCL C.
 LIBCLC_FOLDERS = ("/usr/lib/clc", "/usr/share/clc", "/usr/lib/llvm-*/share/clc", "/usr/local/share/clc")
 ROCM_FOLDERS = (
     "/usr/lib/*-linux-gnu/amdgcn/bitcode",
@@ -30,7 +30,7 @@ ROCM_FOLDERS = (
 
 @dataclass(frozen=True)
 class Tools:
-    """Paths of all that the gate runs, and of the two libraries that it links."""
+    """The paths of all tools and of the two libraries."""
 
     clang: Path
     libclc: Path
@@ -43,14 +43,14 @@ class Tools:
 
     @property
     def versions(self) -> dict[str, str]:
-        """The version of every tool that tells it, as one line each."""
+        """The version of every tool that prints one, as one line each."""
         programs = (each for each in fields(self) if each.name not in ("libclc", "rocm"))
         return {each.name: version(getattr(self, each.name)) for each in programs}
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """How a tool is found, and what to install where it is not."""
+    """How to find a tool, and what to install if it is missing."""
 
     find: Callable[[], Path | None]
     what: str
@@ -58,12 +58,12 @@ class Wanted:
 
 
 def program(names: Iterable[str]) -> Path | None:
-    """The first of some programs that is on the path."""
+    """The first of these programs that is on the path."""
     return next((Path(found) for name in names if (found := shutil.which(name))), None)
 
 
 def spirv_pair(name: str) -> Path | None:
-    """Clang or llvm-spirv, of the first version of which both are there."""
+    """Clang or llvm-spirv, of the first version of which both exist."""
     for number in SPIRV_CLANGS:
         pair = {each: program([f"{each}-{number}"]) for each in ("clang", "llvm-spirv")}
         if all(pair.values()):
@@ -72,7 +72,7 @@ def spirv_pair(name: str) -> Path | None:
 
 
 def from_wheel(distribution: str, name: str) -> Path | None:
-    """A program that a Python package brings, wherever in its folder it lies."""
+    """A program in a Python package, anywhere in the package's folder."""
     try:
         files = importlib.metadata.files(distribution) or []
     except importlib.metadata.PackageNotFoundError:
@@ -82,7 +82,7 @@ def from_wheel(distribution: str, name: str) -> Path | None:
 
 
 def under(patterns: Iterable[str], name: str) -> Path | None:
-    """The first file of a name in folders of these patterns."""
+    """The first file with this name in folders that match the patterns."""
     for pattern in patterns:
         found = sorted(Path("/").glob(f"{pattern}/{name}".lstrip("/")))
         if found:
@@ -115,7 +115,7 @@ def find() -> Tools:
     Raises
     ------
     SvgfError
-        Some are missing; the message names each and what installs it.
+        If some are missing; the message names each, and what installs it.
     """
     found = {name: wanted.find() for name, wanted in WANTED.items()}
     absent = [WANTED[name] for name, path in found.items() if path is None]

@@ -1,4 +1,4 @@
-"""What a compiled kernel needs of a device, and how compilers are run to find out."""
+"""What a compiled kernel needs on a device, and how compilers are run."""
 
 from __future__ import annotations
 
@@ -14,22 +14,23 @@ from svgf_cl.errors import SvgfError
 
 
 class RejectedError(SvgfError):
-    """A compiler or a validator refused a kernel; the message is what it said."""
+    """A compiler or a validator refused a kernel; the message is its output."""
 
 
 @dataclass(frozen=True)
 class Instructions:
-    """How often each kind of instruction stands in a kernel's code; loops are counted once.
+    """The number of instructions of each kind in a kernel's code; loops count once.
 
     Parameters
     ----------
     total : int
-        All but padding.
+        All instructions except padding.
     loads, stores : int
-        Of global memory, by each work-item for itself. AMD's scalar loads, one for a whole wave, are not among them.
+        Of global memory, by each work-item for itself. AMD's scalar loads, of which a whole wave needs one, do not
+        count.
     integer : int
-        Additions, multiplications and shifts of whole numbers. Nearly all compute addresses; in kernels with a
-        polynomial exponential one shift and one addition of each weight do not.
+        Additions, multiplications and shifts of integers. Nearly all of them compute addresses, except one shift and
+        one addition for each weight with a polynomial exponential.
     """
 
     total: int
@@ -39,7 +40,7 @@ class Instructions:
 
     @classmethod
     def counted(cls, mnemonics: Iterable[str], loads: str, stores: str, integer: str) -> Instructions:
-        """Count mnemonics by regular expressions that match the beginning of those of a kind."""
+        """Count mnemonics by regular expressions for the beginnings of the mnemonics of each kind."""
         every = list(mnemonics)
         return cls(
             len(every), *(sum(bool(re.match(kind, each)) for each in every) for kind in (loads, stores, integer))
@@ -48,7 +49,7 @@ class Instructions:
 
 @dataclass(frozen=True)
 class Usage:
-    """What a kernel takes on one architecture.
+    """The needs of a kernel on one architecture.
 
     Parameters
     ----------
@@ -57,9 +58,9 @@ class Usage:
     scalars : int or None
         AMD's registers of a whole wave (SGPRs).
     spills : int
-        What did not fit into registers: bytes stored and loaded again (NVIDIA), or registers (AMD).
+        Bytes that were stored and loaded again (NVIDIA), or registers (AMD), because there were too few registers.
     scratch : int
-        Bytes of a work-item's own memory: arrays that are indexed at run time, and spills.
+        Bytes of a work-item's private memory, for arrays that are indexed at run time, and for spills.
     """
 
     registers: int
@@ -70,38 +71,38 @@ class Usage:
 
 @dataclass(frozen=True)
 class Compiled:
-    """A kernel: what it takes, and its code as the compiler wrote it (machine code, or the text of its assembly)."""
+    """A kernel: its needs, and its code as the compiler wrote it (machine code or assembly)."""
 
     usage: Usage
     code: bytes
 
 
 def written(build: Build, folder: Path) -> Path:
-    """Write a build's source into a folder of its own and return the file."""
+    """Write a build's source into its own folder, and return the file."""
     path = folder / f"{build.source}.cl"
     path.write_text(programs.source(build.source), encoding="utf-8")
     return path
 
 
 def language(build: Build) -> tuple[str, ...]:
-    """Clang's options for a build: what drivers get, but for -w, which hides warnings."""
+    """Clang's options for a build: those for drivers without -w, which hides warnings."""
     return ("-x", "cl", *(option for option in build.options if option != "-w"), "-Xclang", "-finclude-default-header")
 
 
 def included(text: str, folder: Path) -> tuple[str, str]:
-    """Have the compiler read a text before the source; it is kept in this folder."""
+    """Options that make the compiler read `text` before the source; the text is written to this folder."""
     header = folder / "included.h"
     header.write_text(text)
     return "-include", str(header)
 
 
 def passed(option: str, *values: str) -> tuple[str, ...]:
-    """Pass an option to the compiler proper, once with each value."""
+    """Pass an option to the compiler itself, once for each value."""
     return tuple(word for value in values for word in ("-Xclang", option, "-Xclang", value))
 
 
 def said_by(command: Sequence[str | Path]) -> str:
-    """Run a tool and return what it printed; `RejectedError` where it fails."""
+    """Run a tool and return its output; `RejectedError` if it fails."""
     tool = subprocess.run(command, capture_output=True, text=True)
     if tool.returncode:
         raise RejectedError(f"{Path(command[0]).name}: {(tool.stderr + tool.stdout).strip()}")

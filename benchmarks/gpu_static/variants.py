@@ -1,4 +1,4 @@
-"""Which variants of the kernels are compiled: all that differ in one choice, and all choices at once."""
+"""The variants of the kernels that are compiled: each choice alone, and all choices at once."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.signals import SPLITS, Inputs
 from svgf_cl.settings import Choice, Switch, Value, defaults, domains
 
-USUAL = Inputs(motion=3, albedo=True)  # what most renderers give
-# The least and the most that frames of either split may supply.
+USUAL = Inputs(motion=3, albedo=True)  # the fields that most renderers write
+# The fewest and the most fields of frames with either split.
 EXTREMES = tuple(
     supplied
     for signals in SPLITS
@@ -21,15 +21,15 @@ EXTREMES = tuple(
 
 
 def variants() -> list[Build]:
-    """Every source file with the options of every case, each once; the first of a source is the most usual one."""
+    """Every source file with the options of every case, each once; the most usual variant of a source is first."""
     return builds(cases())
 
 
 def cases() -> Iterator[Case]:
-    """Of each filter the defaults and all choices at once with any frames, and one choice alone with usual ones.
+    """For each filter, the defaults and all choices at once, with any frames; and each choice alone, with usual frames.
 
-    The product of all choices would take an hour to compile. `scripts/lint_kernels.py` checks more of it, by clang
-    alone.
+    Compiling the product of all choices would take an hour. `scripts/lint_kernels.py` checks more combinations, with
+    clang alone.
     """
     for kind in FILTERS.values():
         alone = choices(kind)
@@ -43,7 +43,7 @@ def cases() -> Iterator[Case]:
 
 
 def choices(kind: type[Filter]) -> list[dict[str, Value]]:
-    """A filter's settings that change its code, one by one, with each value that is not the default."""
+    """A filter's settings that change its code, one at a time, with each value that is not the default."""
     usual = defaults(kind)
     return [
         {name: value}
@@ -56,5 +56,5 @@ def choices(kind: type[Filter]) -> list[dict[str, Value]]:
 
 
 def case(kind: type[Filter], settings: dict[str, Value], supplied: Inputs) -> Case:
-    """A filter with these settings as GPUs run it."""
+    """A filter with these settings, with the tuning for GPUs."""
     return Case(kind(**settings), supplied, GPU_TUNING)

@@ -1,6 +1,6 @@
-"""The tracer's benchmark: a frame against raw Embree, where its time goes, memory, start, noise.
+"""The tracer's benchmark: a frame compared with raw Embree, the split of its time, memory, start, noise.
 
-`recording` takes down what one frame asks of Embree and of the shading loop; `rounds` times the frame against those
-same rays; `split` says what the frame's CPU time is spent on; `fresh` starts new processes; `noise` tells the error
-beside the speed; `suite` runs it all, `tables` and `picture` show it. How to read it: docs/benchmarks.md.
+`recording` records the queries to Embree and the calls of the shading loop in one frame. `rounds` times the frame and
+the same rays in raw Embree. `split` divides the frame's CPU time. `fresh` starts new processes. `noise` measures the
+error. `suite` runs everything; `tables` and `picture` show the results. docs/benchmarks.md explains them.
 """

@@ -1,4 +1,4 @@
-"""``python -m benchmarks.tracing``: how fast the path tracer is beside raw Embree, and what it spends its time on."""
+"""``python -m benchmarks.tracing``: compares the path tracer with raw Embree, and divides its time into parts."""
 
 from __future__ import annotations
 

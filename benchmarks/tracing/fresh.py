@@ -1,6 +1,6 @@
-"""The tracer in a new process: how long it takes to get going, and how much memory it comes to hold.
+"""The tracer in a new process: the time until the first frame, and the memory.
 
-Run as a module, this is that process: it prints what it found as JSON.
+Run as a module, this is that process; it prints its results as JSON.
 """
 
 from __future__ import annotations
@@ -23,29 +23,29 @@ from benchmarks.tracing.watching import watched
 from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Shape
 
-STARTS = 4  # the first with nothing compiled yet
+STARTS = 4  # in the first one, nothing is compiled yet
 
-SMALL = (16, 16)  # a first frame that takes no time itself
+SMALL = (16, 16)  # a first frame so small that rendering it takes no time
 
 STATUS = Path("/proc/self/status")
 
 
 @dataclass(frozen=True)
 class Fresh:
-    """What a new process found.
+    """The results of a new process.
 
     Parameters
     ----------
     load : float
-        Seconds from the scene's name to the scene, with its trees.
+        Seconds from the scene's name to the scene with its trees.
     trees : float
-        Seconds of that in which Embree built them.
+        Seconds of `load` in which Embree built the trees.
     first : float
-        Seconds that the first frame took, of a size that takes no time itself: compiling, or loading what is compiled.
+        Seconds for a first frame that is tiny, so this is the time for compiling or for loading compiled code.
     libraries, scene : int
-        Bytes held before the scene was loaded, and how many more after that.
+        Bytes in use before the scene was loaded, and additional bytes afterwards.
     peak : int
-        The most bytes ever held, a frame of the full size among what was done.
+        The peak memory in bytes, including a frame of full size.
     """
 
     load: float
@@ -57,12 +57,12 @@ class Fresh:
 
 
 def in_new_process(scene: str, shape: Shape, caches: Path) -> Fresh:
-    """Load a scene and render frames in a new process that keeps what it compiles in a folder.
+    """Load a scene and render frames in a new process that caches compiled code in the folder `caches`.
 
     Raises
     ------
     SvgfError
-        Where it fails.
+        If it fails.
     """
     environment = os.environ | {"XDG_CACHE_HOME": str(caches)}
     command = [sys.executable, "-m", __name__, scene, *map(str, shape)]
@@ -73,7 +73,7 @@ def in_new_process(scene: str, shape: Shape, caches: Path) -> Fresh:
 
 
 def starts(scene: str, shape: Shape, advance: Callable[[], None]) -> list[Fresh]:
-    """What a new process finds with an empty cache of compiled code, and what later ones do; `advance` after each."""
+    """The results of a new process with an empty cache of compiled code, and of later ones; `advance` after each."""
     found = []
     with tempfile.TemporaryDirectory(prefix="svgf_cl-bench-") as folder:
         for _ in range(STARTS):
@@ -83,7 +83,7 @@ def starts(scene: str, shape: Shape, advance: Callable[[], None]) -> list[Fresh]
 
 
 def find_out(name: str, shape: Shape) -> Fresh:
-    """What this process finds, which must not have rendered before."""
+    """The results of this process, which must not have rendered before."""
     from svgf_cl_tracer import Shot, render_frame
     from svgf_cl_tracer.cli.scenes import open_scene
     from svgf_cl_tracer.trees import Tree
@@ -100,7 +100,7 @@ def find_out(name: str, shape: Shape) -> Fresh:
     begin = time.perf_counter()
     with watched(Tree, "__init__", build):
         scene = open_scene(name, None)
-        scene.around(Shot(scene, SMALL).origin(0))  # which builds the trees
+        scene.around(Shot(scene, SMALL).origin(0))  # builds the trees
     loaded = time.perf_counter()
     held = process.memory_info().rss - libraries
     render_frame(Shot(scene, SMALL), 0)
@@ -110,8 +110,8 @@ def find_out(name: str, shape: Shape) -> Fresh:
 
 
 def peak_memory() -> int:
-    """The most bytes that this process has ever held."""
-    if STATUS.exists():  # Linux, whose getrusage gives a new process the peak of the one that started it
+    """The peak memory of this process in bytes."""
+    if STATUS.exists():  # Linux: getrusage would give a new process the peak of its parent
         (line,) = (line for line in STATUS.read_text().splitlines() if line.startswith("VmHWM:"))
         return 1024 * int(line.split()[1])
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

@@ -1,6 +1,6 @@
-"""Parts of the shading loop by themselves, over what paths have met in a recorded frame.
+"""Single parts of the shading loop, run over the hits of a recorded frame.
 
-Each sums up what it computes, or the compiler would leave it out.
+Each part sums what it computes, because the compiler would remove it otherwise.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from svgf_cl_tracer.vectors import Float64
 
 
 class Spots(NamedTuple):
-    """Where N paths are: the material they have met or `MISS`, whether they may go on, and whether lights are sampled.
+    """The state of N paths: the material they hit or `MISS`, whether they may continue, whether a light is sampled.
 
-    `u` and `v` are texture coordinates, a ray to a light starts at `origin` and is drawn with `numbers`.
+    `u` and `v` are texture coordinates. A ray to a light starts at `origin`, and is sampled with `numbers`.
     """
 
     material: NDArray[np.int64]
@@ -39,7 +39,7 @@ class Spots(NamedTuple):
 
     @classmethod
     def empty(cls, count: int) -> Spots:
-        """Room for `count` of them."""
+        """Room for `count` paths."""
         return cls(
             np.empty(count, np.int64),
             np.empty(count, np.bool_),
@@ -75,7 +75,7 @@ def find_spots(tables: Tables, draws: Draws, depth: int, paths: Paths, hits: Hit
 
 @compiled
 def draw_numbers(draws: Draws, depth: int, paths: Paths, spots: Spots) -> float:
-    """The random numbers of all paths that may go on."""
+    """The random numbers of all paths that may continue."""
     total = 0.0
     for index in range(len(paths.pixel)):
         pixel, draw = draws.pixels[paths.pixel[index]], FIRST_SURFACE_DRAW + 2 * depth
@@ -90,7 +90,7 @@ def draw_numbers(draws: Draws, depth: int, paths: Paths, spots: Spots) -> float:
 
 @compiled
 def read_textures(tables: Tables, spots: Spots) -> float:
-    """The emission of what shines, and the base colour where paths may go on, by texture if there is one."""
+    """The emission of lights, and the base colour where paths may continue; from a texture if there is one."""
     total = 0.0
     for index in range(len(spots.material)):
         material = spots.material[index]
@@ -105,7 +105,7 @@ def read_textures(tables: Tables, spots: Spots) -> float:
 
 @compiled
 def sample_lights(tables: Tables, paths: Paths, spots: Spots) -> float:
-    """A light from wherever one is sampled, and what shines where a path leaves the scene."""
+    """Sample a light for each path that does so, and the radiance outside for each path that leaves the scene."""
     total = 0.0
     for index in range(len(spots.material)):
         if spots.material[index] == MISS:

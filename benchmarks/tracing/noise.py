@@ -1,4 +1,4 @@
-"""The error that stands beside the tracer's speed: how far a frame of one sample per pixel is from what it shows."""
+"""The error of a frame with one sample per pixel, which is shown beside the tracer's speed."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from svgf_cl_tracer import References, Shot, render_frame
 
 
 def noise(shot: Shot, number: int, spp: int, advance: Callable[[], None]) -> dict[str, float]:
-    """The relMSE to be expected of one sample per pixel, and the frame's PSNR in dB; `spp` samples are the reference.
+    """The expected relMSE of one sample per pixel, and the frame's PSNR in dB; the reference has `spp` samples.
 
-    All rays go through pixel centres: what differs is noise alone. `advance` is called `chunks(spp)` times.
+    All rays go through pixel centres, so that all differences are noise. `advance` is called `chunks(spp)` times.
     """
     references = References(shot, jitter=False)
     estimate = references.render(number, spp, advance)
     frame, truth = render_frame(shot, number, jitter=False).color, references.picture(estimate)
-    # The variance of a mean falls with the number of samples: that of a single one is so many times as large.
+    # The variance of a mean is that of a sample divided by the number of samples.
     return {"relmse": estimate.spp * estimate.error**2, "psnr": psnr(display(frame), display(truth))}

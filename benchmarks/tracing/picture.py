@@ -1,4 +1,4 @@
-"""The split of a frame's CPU time as a picture, and all about the tracer as a part of the report."""
+"""The split of a frame's CPU time as a picture, and the section of the report about the tracer."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PALETTE = (*COLORS, "#8C564B")
 
 
 def section(results: Sequence[Result]) -> Section:
-    """Picture and tables of one scene's results."""
+    """The picture and the tables of one scene's results."""
     title = f"The {results[0].device}"
     return Section(title, inline_svg(partial(draw, results=results), title), tables(results))
 

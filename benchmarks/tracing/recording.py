@@ -1,4 +1,4 @@
-"""All that one frame asks of Embree and of the shading loop, kept so that both can do it again by themselves."""
+"""Records all queries to Embree and all calls of the shading loop in a frame, so that both can be repeated alone."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from svgf_cl_tracer.surroundings import Tables
 from svgf_cl_tracer.trees import FAR, Hits, Tree, Trees
 from svgf_cl_tracer.vectors import Float32
 
-# What rays are sent for: through a pixel, on from a surface, towards a light.
+# The purposes of rays: through a pixel, on from a surface, towards a light.
 KINDS = PRIMARY, BOUNCE, SHADOW = "primary", "bounce", "shadow"
 
-# As many as the tracer uses.
+# As many threads as the tracer uses.
 THREADS = os.cpu_count() or 1
 
 Item = TypeVar("Item")
@@ -32,18 +32,18 @@ Item = TypeVar("Item")
 
 @dataclass(frozen=True)
 class Batch:
-    """Rays that were sent into the scene at once.
+    """Rays that were sent together.
 
     Parameters
     ----------
     kind : str
         One of `KINDS`.
     ask : callable
-        What answers them by itself: Embree's own method, but for the names of what it returns, of a single tree over
-        the whole scene, in which every surface is solid.
+        Traces them: the method of Embree that the tracer used (only the names of its results differ), on a single tree
+        of the whole scene in which every surface is solid.
     origin, direction : (N, 3) float32
     distance : (N,) float32
-        How far they look; a call overwrites it.
+        The largest distance; a call overwrites it.
     """
 
     kind: str
@@ -54,7 +54,7 @@ class Batch:
 
 
 class Shading(NamedTuple):
-    """What one call of the shading loop was given."""
+    """The arguments of one call of the shading loop."""
 
     tables: Tables
     lens: Lens
@@ -67,15 +67,15 @@ class Shading(NamedTuple):
 
 @dataclass(frozen=True)
 class Recording:
-    """One frame.
+    """The recording of one frame.
 
     Parameters
     ----------
     sent : tuple of Batch
-        All rays of the frame, each once.
+        All rays of the frame, each one once.
     asked : dict of str to int
-        By kind, how many of them Embree was asked for: a ray may go to several trees, and on from each hole in a
-        surface; and to none, where it passes no box in which it could meet what counts.
+        The number of queries to Embree, by kind. A ray may be sent to several trees, and again behind each hole in a
+        surface; or to no tree, if it passes no box where a hit would matter.
     shadings : tuple of Shading
     """
 
@@ -84,12 +84,12 @@ class Recording:
     shadings: tuple[Shading, ...]
 
     def rays(self, kind: str) -> int:
-        """How many rays of a kind the tracer sent."""
+        """The number of rays of a kind that the tracer sent."""
         return sum(len(batch.origin) for batch in self.sent if batch.kind == kind)
 
 
 def record(shot: Shot, number: int) -> Recording:
-    """Render frame `number` of a shot as `render_frame` does by default, and keep what it asks for."""
+    """Render frame `number` of a shot as `render_frame` does by default, and record it."""
     recorder = Recorder()
     watchers = (
         (integrator, "start_paths", recorder.start),
@@ -108,7 +108,7 @@ def record(shot: Shot, number: int) -> Recording:
 
 
 class Sent(NamedTuple):
-    """A `Batch` before there is a tree: the corners of what is in the scene, and which method of a tree is asked."""
+    """A `Batch` before its tree is built: the corners of the scene's triangles, and the method of the tree."""
 
     kind: str
     corners: Float32
@@ -117,29 +117,29 @@ class Sent(NamedTuple):
 
 
 class Recorder:
-    """Watchers of the tracer's functions; several threads call them."""
+    """Watchers for the tracer's functions; several threads call them."""
 
     def __init__(self) -> None:
         self.asked: Counter[str] = Counter()
         self.shadings: list[Shading] = []
         self._sent: list[Sent] = []
         self._lock = threading.Lock()
-        self._now = threading.local()  # of a thread: what its rays are for, and the scene that they were sent into
+        self._now = threading.local()  # per thread: the purpose of its rays, and their scene
 
     def batches(self) -> Iterator[Batch]:
-        """What was sent, each scene as one tree."""
+        """The recorded rays, with one tree for each scene."""
         scenes = {id(sent.corners): sent.corners for sent in self._sent}
         trees = {key: Tree(corners, 0, masked=False) for key, corners in scenes.items()}
         for sent in self._sent:
             yield Batch(sent.kind, getattr(trees[id(sent.corners)], sent.method), *sent.rays)
 
     def start(self, real: Callable[..., None], *arguments: Any) -> None:
-        """Of `start_paths`."""
+        """Watches `start_paths`."""
         real(*arguments)
         self._now.kind, self._now.method = PRIMARY, "nearest"
 
     def escape(self, real: Callable[..., Hits], *arguments: Any) -> Hits:
-        """Of `escapes`, which need not know what is nearest."""
+        """Watches `escapes`, which needs no nearest hit."""
         self._now.method = "blocked"
         return real(*arguments)
 
@@ -155,7 +155,7 @@ class Recorder:
         hits: Hits,
         *results: Any,
     ) -> tuple[int, int]:
-        """Of `shade`, which uses the memory of its paths again."""
+        """Watches `shade`, which reuses the memory of its paths."""
         kept = copied(paths)
         self.shadings.append(Shading(tables, lens, before, draws, depth, kept, hits))
         self._now.corners = tables.triangles.corners
@@ -165,18 +165,18 @@ class Recorder:
         return shadows, ahead
 
     def deposit(self, real: Callable[..., None], *arguments: Any) -> None:
-        """Of `deposit`, which comes after shadow rays."""
+        """Watches `deposit`, which is called after shadow rays."""
         real(*arguments)
         self._now.kind = BOUNCE
 
     def send(self, real: Callable[..., Any], trees: Trees, *rays: Float32) -> Any:
-        """Of `Trees.occluded`, which shadow rays are sent through."""
+        """Watches `Trees.occluded`, which traces shadow rays."""
         if self._now.kind == SHADOW:
             self._keep("blocked", *map(np.copy, rays))
         return real(trees, *rays)
 
     def ask(self, real: Callable[..., Any], tree: Tree, origin: Float32, *more: Float32) -> Any:
-        """Of the methods of `Tree`; one that is being built, which takes a ray of its own, is left alone."""
+        """Watches the methods of `Tree`, except while a tree is built, which sends a ray of its own."""
         if hasattr(self._now, "kind"):
             with self._lock:
                 self.asked[self._now.kind] += len(origin)
@@ -187,12 +187,12 @@ class Recorder:
 
 
 def copied(paths: Paths) -> Paths:
-    """The same in memory of their own."""
+    """A copy of the paths."""
     return Paths(*(np.copy(values) for values in paths))  # type: ignore[arg-type]  # each of its own type
 
 
 def share_out(work: Callable[[Item], None], items: Iterable[Item], threads: int) -> None:
-    """Let so many threads do `work` on all items, each taking the next one."""
+    """Do `work` on all items in this many threads; each thread takes the next item."""
     waiting = iter(items)
 
     def some(_: int) -> None:

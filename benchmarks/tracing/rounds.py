@@ -1,4 +1,4 @@
-"""A frame's time against what Embree by itself needs for the very same rays, in turns."""
+"""Times a frame, and the same rays in Embree alone, in turns."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from svgf_cl.bench.rig import HOST
 from svgf_cl_tracer import Shot, render_frame
 from svgf_cl_tracer.vectors import Float32
 
-# The clock of what all threads spend together.
+# The clock for the total CPU time of all threads.
 CPU = "cpu"
 
 FRAME, EMBREE = "frame", "embree"
 
 
 class Sample(NamedTuple):
-    """A time.
+    """One measured time.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class Sample(NamedTuple):
         `FRAME`, `EMBREE` for all rays of the frame, or `embree(kind)`.
     threads : int
     clock : str
-        `HOST`: from first to last; `CPU`.
+        `HOST`: from the first thread's start to the last one's end; or `CPU`.
     seconds : float
     """
 
@@ -38,19 +38,19 @@ class Sample(NamedTuple):
 
 
 def embree(kind: str) -> str:
-    """What Embree's time for a kind of rays is called."""
+    """The name of Embree's time for a kind of rays."""
     return f"{EMBREE} {kind}"
 
 
 def sample_round(shot: Shot, number: int, recording: Recording) -> Iterator[Sample]:
-    """Time the frame once, then raw Embree with all of its rays, on all threads and on one."""
+    """Time the frame once, and then all of its rays in raw Embree, on all threads and on one."""
     yield from both_clocks(FRAME, THREADS, lambda: render_frame(shot, number))
     for threads in sorted({THREADS, 1}, reverse=True):
         yield from sent_again(recording, threads)
 
 
 def both_clocks(what: str, threads: int, work: Callable[[], object]) -> Iterator[Sample]:
-    """Time `work` once."""
+    """Time `work` once with both clocks."""
     begin, begin_cpu = time.perf_counter(), time.process_time()
     work()
     end, end_cpu = time.perf_counter(), time.process_time()
@@ -59,7 +59,10 @@ def both_clocks(what: str, threads: int, work: Callable[[], object]) -> Iterator
 
 
 def sent_again(recording: Recording, threads: int) -> Iterator[Sample]:
-    """Send all of a frame's rays to Embree, on so many threads; each kind's time is its part of the whole."""
+    """Send all rays of a frame to Embree again, on this many threads.
+
+    The time of each kind is its part of the whole.
+    """
     spent: dict[str, list[float]] = defaultdict(list)
 
     def ask(job: tuple[Batch, Float32]) -> None:

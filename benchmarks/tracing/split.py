@@ -1,8 +1,8 @@
-"""What a frame's CPU time is spent on.
+"""Divides the CPU time of a frame into parts.
 
-The frame's stages are timed as it runs. The shading loop does everything to one path after the other: its parts are
-timed by themselves, over the same paths and hits, and the G-buffer by leaving it out; as shares of the whole loop, run
-again just so, they are taken of the time that the loop had in the frame. What is left of it is shading.
+The frame's stages are timed while it runs. The shading loop does all its work for one path after the other, so its
+parts are timed alone, over the same paths and hits; the time of the G-buffer is the saving without it. Their shares of
+the whole loop, when it is run again alone, are multiplied by the loop's time in the frame. The rest is shading.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ PARTS = EMBREE, MASKS, SHADING, LIGHTS, NUMBERS, TEXTURES, G_BUFFER, ENDS, REST 
     "rest",
 )
 
-# By part, the functions that it takes, without such as belong to another part.
+# The functions of each part, without those that belong to another part.
 STAGES: dict[str, tuple[tuple[object, str], ...]] = {
     EMBREE: ((Tree, "__init__"), (Tree, "nearest"), (Tree, "blocked")),
     MASKS: ((Trees, "intersect"), (Trees, "occluded")),
@@ -54,14 +54,14 @@ Seconds = dict[str, float]
 
 
 class Tally:
-    """Adds up the CPU time that threads spend on this and that, each moment counted once."""
+    """Adds up the CPU time of parts over all threads, and counts each moment once."""
 
     def __init__(self) -> None:
         self.seconds: Seconds = defaultdict(float)
         self._lock, self._threads = threading.Lock(), threading.local()
 
     def timed(self, part: str) -> Callable[..., Any]:
-        """A watcher that counts calls as `part`, but for the watched calls within."""
+        """A watcher that counts the time of calls as `part`, without the watched calls inside."""
 
         def watcher(real: Callable[..., Any], *arguments: Any, **options: Any) -> Any:
             beside, self._threads.within = getattr(self._threads, "within", 0.0), 0.0
@@ -77,7 +77,7 @@ class Tally:
 
 
 def split(shot: Shot, number: int, recording: Recording) -> Seconds:
-    """Render a frame once and divide its CPU time, in s, into `PARTS`; `recording` is of the same frame."""
+    """Render a frame once, and divide its CPU time, in s, into `PARTS`; `recording` is of the same frame."""
     stages, shares = stage_times(shot, number), loop_shares(recording)
     loop = stages[SHADING]
     parts = stages | {part: share * loop for part, share in shares.items()}
@@ -86,7 +86,7 @@ def split(shot: Shot, number: int, recording: Recording) -> Seconds:
 
 
 def stage_times(shot: Shot, number: int) -> Seconds:
-    """Seconds of a frame's stages as it runs, the whole shading loop as `SHADING`."""
+    """Seconds of a frame's stages while it runs; the whole shading loop is `SHADING`."""
     tally = Tally()
     with ExitStack() as stack:
         for part, functions in STAGES.items():
@@ -100,7 +100,7 @@ def stage_times(shot: Shot, number: int) -> Seconds:
 
 
 def loop_shares(recording: Recording) -> Seconds:
-    """Shares of the shading loop's time, by part."""
+    """The shares of parts in the time of the shading loop."""
     calls = recording.shadings
     whole, without_g_buffer = cpu_time(again, calls), cpu_time(without_features, calls)
     alone = {part: cpu_time(prepare, calls) for part, prepare in ALONE.items()}
@@ -125,29 +125,29 @@ def without_features(call: Shading) -> Callable[[], object]:
 
 
 def shading(call: Shading, features: Features) -> Callable[[], object]:
-    """The loop with room for what it returns."""
+    """The loop with memory for its results."""
     count = len(call.draws.pixels)
     light = np.zeros((count, 5, 3), np.float32)
     return partial(shade, *call, light, features, ShadowRays.empty(count), Paths.empty(count))
 
 
 def drawing(call: Shading) -> Callable[[], object]:
-    """Its random numbers alone."""
+    """Only the random numbers of the loop."""
     return partial(draw_numbers, call.draws, call.depth, call.paths, spots(call))
 
 
 def reading(call: Shading) -> Callable[[], object]:
-    """Its textures alone."""
+    """Only the textures of the loop."""
     return partial(read_textures, call.tables, spots(call))
 
 
 def lighting(call: Shading) -> Callable[[], object]:
-    """Its lights alone."""
+    """Only the lights of the loop."""
     return partial(sample_lights, call.tables, call.paths, spots(call))
 
 
 def spots(call: Shading) -> Spots:
-    """Where the loop's paths are."""
+    """The paths of a call of the loop."""
     found = Spots.empty(len(call.paths.pixel))
     find_spots(call.tables, call.draws, call.depth, call.paths, call.hits, found)
     return found

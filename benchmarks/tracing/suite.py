@@ -1,4 +1,4 @@
-"""Everything that is measured of the tracer on one scene, as the benchmark's results."""
+"""All measurements of the tracer on one scene, as results of the benchmark."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from svgf_cl_tracer import Shot, render_frame
 from svgf_cl_tracer.cli.scenes import open_scene
 from svgf_cl_tracer.references import chunks
 
-# The frame that is timed: in the middle of a sequence, where the camera moves.
+# The frame that is timed: from the middle of a sequence, where the camera moves.
 FRAMES, NUMBER = 24, 12
 
 REFERENCE_SPP = 64
 
-# Of the frame whose memory is measured.
+# The size of the frame whose memory is measured.
 MEMORY_SHAPE: Shape = (1080, 1920)
 
-# Seconds of each round, by what was timed, on how many threads, and the clock.
+# Seconds of each round, by what was timed, the number of threads, and the clock.
 Samples = dict[tuple[str, int, str], list[float]]
 
 
@@ -40,7 +40,7 @@ def measure(scene: str, shape: Shape, rounds: int, progress_bar: ProgressBar) ->
     scene : str
         As `svgf_cl_tracer.cli.scenes.open_scene` takes it.
     shape : (int, int)
-        Of the frames that are timed.
+        The size of the timed frames.
     rounds : int
         >= 1.
     progress_bar : callable
@@ -49,12 +49,12 @@ def measure(scene: str, shape: Shape, rounds: int, progress_bar: ProgressBar) ->
     Returns
     -------
     tuple of Result
-        Of the device "tracer: " and the scene's name.
+        Of the device "tracer: " followed by the scene's name.
 
     Raises
     ------
     SvgfError
-        Where the scene cannot be used.
+        If the scene cannot be used.
     """
     shot = Shot(open_scene(scene, None), shape, FRAMES)
     device = f"tracer: {Path(scene).stem}"
@@ -72,8 +72,8 @@ def measure(scene: str, shape: Shape, rounds: int, progress_bar: ProgressBar) ->
 
 
 def sampled(shot: Shot, recording: Recording, rounds: int, advance: Callable[[], None]) -> Samples:
-    """Times of the frame, of its rays, and of all that its CPU time is spent on."""
-    split(shot, NUMBER, recording)  # compiles its loops
+    """Times of the frame, of its rays, and of all parts of its CPU time."""
+    split(shot, NUMBER, recording)  # compiles the loops
     samples: Samples = defaultdict(list)
     for _ in range(rounds):
         for what, threads, clock, seconds in sample_round(shot, NUMBER, recording):
@@ -85,7 +85,7 @@ def sampled(shot: Shot, recording: Recording, rounds: int, advance: Callable[[],
 
 
 def counts(recording: Recording) -> dict[str, dict[str, int]]:
-    """How many rays the tracer sent and how many it asked Embree for, by what is timed."""
+    """The numbers of rays and of queries to Embree, by what is timed."""
     found = {embree(kind): {"rays": recording.rays(kind), "asked": recording.asked[kind]} for kind in KINDS}
     return found | {EMBREE: {name: sum(each[name] for each in found.values()) for name in ("rays", "asked")}}
 
@@ -93,14 +93,14 @@ def counts(recording: Recording) -> dict[str, dict[str, int]]:
 def frame_results(
     device: str, shape: Shape, samples: Samples, facts: Mapping[str, Mapping[str, float]]
 ) -> Iterator[Result]:
-    """The samples by name, with what `facts` has to say of each."""
+    """The samples by name, with the facts about each."""
     for (what, threads, clock), seconds in samples.items():
         variant = "" if threads == THREADS else f"threads{threads}"
         yield result(device, shape, what, clock, seconds, variant=variant, threads=threads, **facts.get(what, {}))
 
 
 def start_results(device: str, found: Sequence[Fresh]) -> Iterator[Result]:
-    """From a scene's name to a first frame, and the memory that it takes."""
+    """The time from a scene's name to the first frame, and the memory."""
     cold, *warm = found
     times = {
         "load": [each.load for each in found],

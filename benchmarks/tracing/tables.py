@@ -1,4 +1,4 @@
-"""What was measured of the tracer on one scene as tables of text, the same for terminal and report."""
+"""Measurements of the tracer on one scene as tables of text, for the terminal and the report."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def tables(results: Results) -> list[Table]:
 
 
 def frame_table(results: Results) -> Table:
-    """The frame beside its rays alone, by both clocks, and its error."""
+    """The frame and its rays alone, with both clocks, and the frame's error."""
     frame = find(results, row=f"tracer {FRAME}", clock=HOST)
     facts, threads = frame.facts, frame.facts["threads"]
     errors = facts["relmse"], facts["psnr"], 1.0 / (facts["relmse"] * frame.median)
@@ -37,7 +37,7 @@ def frame_table(results: Results) -> Table:
 
 
 def timed(results: Results, what: str, threads: int) -> Iterator[str]:
-    """Time and ratio to raw Embree on all threads, by both clocks."""
+    """Time and ratio to raw Embree on all threads, with both clocks."""
     for clock in (HOST, CPU):
         found = find(results, row=f"tracer {what}", threads=threads, clock=clock)
         yield spread(found)
@@ -45,13 +45,13 @@ def timed(results: Results, what: str, threads: int) -> Iterator[str]:
 
 
 def ratio(slow: Result, fast: Result) -> str:
-    """How many times as long one took as the other in the same round: median, 10th and 90th percentile."""
+    """How many times as long the slow one took as the fast one in the same round: median, 10th and 90th percentile."""
     low, median, high = np.percentile(np.divide(slow.seconds, fast.seconds), (10, 50, 90))
     return f"{median:.2f} ({low:.2f}-{high:.2f})"
 
 
 def ray_table(results: Results) -> Table:
-    """How many rays of each kind, and how fast Embree is at them by itself."""
+    """The number of rays of each kind, and Embree's speed for them."""
     threads = find(results, row=f"tracer {FRAME}").facts["threads"]
     speeds = ("Mray/s, 1 thread", f"Mray/s, {threads} threads", "times faster")
     columns = ("rays", "sent", "asked of Embree in the frame", *speeds)
@@ -64,14 +64,14 @@ def ray_table(results: Results) -> Table:
 
 
 def ray_row(one: Result, every: Result) -> tuple[str, ...]:
-    """Counts and speeds of one kind, from the times on one thread and on all; no speed where there are no such rays."""
+    """Counts and speeds of one kind, from the times on one thread and on all; no speed if there are no such rays."""
     rays, asked = one.facts["rays"], one.facts["asked"]
     speeds = [f"{1e-6 * rays / each.median:.2f}" for each in (one, every)] if rays else ["", ""]
     return f"{rays:,}", f"{asked:,}", *speeds, f"{one.median / every.median:.2f}" if rays else ""
 
 
 def split_table(results: Results) -> Table:
-    """What the frame's CPU time is spent on."""
+    """The parts of the frame's CPU time."""
     medians = split_medians(results)
     whole = sum(medians.values())
     rows = [(part, milliseconds(seconds), f"{100 * seconds / whole:.1f}") for part, seconds in medians.items()]
@@ -84,7 +84,7 @@ def split_medians(results: Results) -> dict[str, float]:
 
 
 def start_table(results: Results) -> Table:
-    """From the scene's name to a first frame, in new processes."""
+    """The time from the scene's name to the first frame, in new processes."""
     starts = {
         "load the scene": "load",
         "of that, build Embree's trees": "trees",
@@ -96,7 +96,7 @@ def start_table(results: Results) -> Table:
 
 
 def memory_table(results: Results) -> Table:
-    """What a new process held."""
+    """The memory of a new process."""
     facts = find(results, row="tracer start load").facts
     sizes = {
         "Python and libraries": facts["libraries"],

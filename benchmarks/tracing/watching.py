@@ -1,4 +1,4 @@
-"""Functions of the tracer watched from outside, so that the tracer itself needs no hooks."""
+"""Watches functions of the tracer from outside, so that the tracer needs no hooks."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 @contextmanager
 def watched(owner: object, name: str, watcher: Callable[..., Any]) -> Iterator[None]:
-    """While the block lasts, a call of `name` in a module or class calls `watcher`, with the real function first."""
+    """Within the block, calls of `name` in a module or class go to `watcher`, with the real function as argument."""
     real = getattr(owner, name)
     setattr(owner, name, lambda *arguments, **options: watcher(real, *arguments, **options))
     try:

@@ -1,1 +1,1 @@
-"""How the network of LBF is trained: scenes, samples, the objective with its gradient, and the command."""
+"""Training of LBF's network: scenes, samples, the objective with its gradient, and the command."""

@@ -1,6 +1,6 @@
-"""Trains the network of LBF on random rooms, and writes it beside what made it.
+"""Trains the network of LBF on random rooms, and writes it together with its origin.
 
-docs/lbf.md says what is learned and how well it does.
+docs/lbf.md says what is learned, and how good the result is.
 """
 
 from __future__ import annotations
@@ -34,25 +34,25 @@ from svgf_cl.oracle.taps import Array
 from svgf_cl_tracer import Scene
 from svgf_cl_tracer.cli.scenes import open_scene
 
-HELD_OUT = range(10_000, 10_004)  # seeds of rooms to judge by
+HELD_OUT = range(10_000, 10_004)  # seeds of rooms that are not used for training
 SHIPPED = Path(lbf.__file__).with_name(lbf.FILE)
-STEPS = 25  # of the optimiser in a round
-DIGITS = 6  # of a weight, in the file
+STEPS = 25  # steps of the optimiser in a round
+DIGITS = 6  # digits of a weight in the file
 
 
 @dataclass(frozen=True)
 class Course:
-    """How the network is trained: what a run must share with one that it resumes.
+    """The parameters of a training, which must be the same when a run is resumed.
 
     Parameters
     ----------
     rooms, rounds, pixels : int
-        Scenes; draws of pixels; pixels of a draw.
+        The number of scenes, of draws of pixels, and of pixels in a draw.
     size : str
     spp : int
-        Of a truth.
+        Samples per pixel of a truth.
     scenes : tuple of str
-        To train on beside rooms.
+        Scenes for training in addition to the rooms.
     """
 
     rooms: int
@@ -65,17 +65,17 @@ class Course:
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a training stands after some rounds: its checkpoint.
+    """The state of a training after some rounds: its checkpoint.
 
     Parameters
     ----------
     course : dict
     errors : list of float
-        Of each round, over its own pixels, at its end.
+        The error of each round over its own pixels, at its end.
     seconds : float
-        Spent in the optimiser, in all runs.
+        Time in the optimiser, in all runs.
     values : list of float
-        The network.
+        The weights of the network.
     """
 
     course: dict[str, Any]
@@ -121,13 +121,13 @@ def train(
 
 
 def gathered(shots: Shots, scenes: Sequence[Scene], title: str) -> list[Sample]:
-    """The samples of all scenes; truths are kept in the user's cache."""
+    """The samples of all scenes; truths are stored in the user's cache."""
     with progress_bar(title, shots.chunks(len(scenes))) as advance:
         return [each for scene in scenes for each in shots.samples(scene, advance)]
 
 
 def resumed(path: Path, course: Course) -> Progress:
-    """What an earlier run of the same course has left; else the beginning."""
+    """The state of an earlier run of the same course; if there is none, the initial state."""
     start = Progress(jsonable(course), [], 0.0, packed(untrained(0)).tolist())
     if not path.exists():
         return start
@@ -136,7 +136,7 @@ def resumed(path: Path, course: Course) -> Progress:
 
 
 def jsonable(course: Course) -> dict[str, Any]:
-    """The course as JSON has it."""
+    """The course as JSON."""
     return dict(json.loads(json.dumps(asdict(course))))
 
 
@@ -162,7 +162,7 @@ def optimised(learned: Pixels, course: Course, progress: Progress, checkpoint: P
 
 
 def errors(network: Network, samples: Sequence[Sample]) -> dict[str, float]:
-    """Mean squared relative error of what goes in, and of what the filter makes of it."""
+    """Mean squared relative error of the filter's input, and of its result."""
     pixels = Pixels.of(samples)
     raw = np.concatenate([each.light[each.guides.hit] for each in samples])
     return {"accumulated": relative(raw, pixels), "LBF": pixels.error(network)[0]}
@@ -179,7 +179,7 @@ def rows(found: dict[str, dict[str, float]]) -> Iterable[tuple[str, ...]]:
 
 
 def write(path: Path, network: Network, progress: Progress, found: dict[str, dict[str, float]]) -> None:
-    """Write the network beside all that made it."""
+    """Write the network, together with its origin."""
     about = {
         "command": shlex.join(["python", "-m", "benchmarks.training", *sys.argv[1:]]),
         **provenance(devices.default_device()),
@@ -195,7 +195,7 @@ def write(path: Path, network: Network, progress: Progress, found: dict[str, dic
 
 
 def write_json(path: Path, record: object) -> None:
-    """Write a record, whole or not at all."""
+    """Write a record, completely or not at all."""
     write_text(path, json.dumps(record, indent=1) + "\n")
 
 

@@ -1,4 +1,4 @@
-"""The bilateral filter of LBF at single pixels, and how its result changes with its parameters; compiled."""
+"""The bilateral filter of LBF at single pixels, and the derivatives of its result by its parameters; compiled."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ Single = NDArray[np.float32]
 
 
 class Surroundings(NamedTuple):
-    """What the filter reads, of a stack of F frames; section 8 of docs/algorithm.md.
+    """The input of the filter, for a stack of F frames; section 8 of docs/algorithm.md.
 
     Parameters
     ----------
     light : (F, H, W, 3)
     luminance, sharpness : (F, H, W)
-        Of light; 1 over the tolerated difference of it.
+        The luminance of light, and 1 / the tolerated difference of luminance.
     depth, depth_sharpness : (F, H, W)
-        0 where nothing was hit; 1 / psi_z.
+        0 at a miss; 1 / psi_z.
     normal : (F, H, W, 3)
     normal_sharpness : (F, H, W)
         1 / psi_n^2.
@@ -52,7 +52,7 @@ def filtered(
     pixels : (P, 3)
     parameters : (P, OUTPUTS)
     octaves : int
-        Greatest difference of albedo codes.
+        Largest difference of albedo codes.
 
     Notes
     -----

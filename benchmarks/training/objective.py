@@ -1,4 +1,4 @@
-"""What training makes small: the relative error of the filter over a set of pixels, and its gradient."""
+"""The objective of the training: the filter's relative error over a set of pixels, and its gradient."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from svgf_cl.oracle.albedo import OCTAVE
 from svgf_cl.oracle.lbf import EXPONENTS
 from svgf_cl.oracle.taps import Array, luminance
 
-DARKNESS = 0.1  # of a frame's mean light: errors in what is darker count against this
-DECAY = 1e-4  # of the squares of the weights, in the objective
+DARKNESS = 0.1  # as a share of a frame's mean light: errors in darker pixels are relative to this
+DECAY = 1e-4  # weight of the squared weights in the objective
 
 SHAPES = {
     "first": (HIDDEN, INPUTS),
@@ -28,7 +28,7 @@ SHAPES = {
 
 
 def unpacked(values: Array) -> Network:
-    """The network of a vector of all its numbers."""
+    """The network from a vector of all its numbers."""
     ends = np.cumsum([int(np.prod(shape)) for shape in SHAPES.values()])
     parts = np.split(values, ends[:-1])
     return Network(**{name: part.reshape(shape) for (name, shape), part in zip(SHAPES.items(), parts, strict=True)})
@@ -40,7 +40,7 @@ def packed(network: Network) -> Array:
 
 
 def untrained(seed: int) -> Network:
-    """Small random weights about parameters that make a moderate filter."""
+    """Small random weights, around parameters that make a moderate filter."""
     random = np.random.default_rng(seed)
     first = random.standard_normal(SHAPES["first"]) / np.sqrt(INPUTS)
     second = 0.1 * random.standard_normal(SHAPES["second"])
@@ -59,7 +59,7 @@ class Pixels:
     seen : (P, INPUTS)
     truth : (P, 3)
     scale : (P,)
-        What an error counts against.
+        The denominator of the error.
     """
 
     around: Surroundings
@@ -70,7 +70,7 @@ class Pixels:
 
     @classmethod
     def of(cls, samples: Sequence[Sample]) -> Pixels:
-        """All pixels that show something."""
+        """All pixels that are not misses."""
         places = np.argwhere(np.stack([each.guides.hit for each in samples]))
         index = tuple(places.T)
         truth = np.stack([each.truth for each in samples])
@@ -80,13 +80,13 @@ class Pixels:
         return cls(around, places, np.stack([each.seen for each in samples])[index], truth[index], scale[index])
 
     def some(self, count: int, seed: int) -> Pixels:
-        """A random choice of `count` of them."""
+        """A random choice of `count` pixels."""
         chosen = np.random.default_rng(seed).permutation(len(self.places))[:count]
         parts = (self.places[chosen], self.seen[chosen], self.truth[chosen], self.scale[chosen])
         return Pixels(self.around, *parts)
 
     def error(self, network: Network) -> tuple[float, Array]:
-        """Mean squared relative error, and its gradient by all numbers of the network, as `packed` has them."""
+        """Mean squared relative error, and its gradient by all numbers of the network, in the order of `packed`."""
         bent = self.seen @ network.first.T + network.first_bias
         hidden = bent / (1 + np.abs(bent))
         powers = hidden @ network.second.T + network.second_bias

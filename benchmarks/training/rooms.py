@@ -1,4 +1,4 @@
-"""Random rooms: scenes to train on, so that scenes that filters are judged by need not be."""
+"""Random rooms for training, so that the scenes for comparing filters need not be used for it."""
 
 from __future__ import annotations
 
@@ -15,31 +15,31 @@ from svgf_cl_tracer.materials import Colour, Material
 from svgf_cl_tracer.motion import Motion
 from svgf_cl_tracer.textures import Image
 
-THINGS = 14  # in a room, beside walls and lamps
-SECONDS = 2.0  # that things move
+THINGS = 14  # in a room, in addition to walls and lamps
+SECONDS = 2.0  # duration of motion
 
 
 def room(seed: int) -> Scene:
-    """A room of a size, paint, things, lamps and camera path drawn by `seed`; in every second one things move."""
+    """A room whose size, paint, objects, lamps and camera path depend on `seed`; in every second room objects move."""
     return Builder(np.random.default_rng(seed), moves=seed % 2 == 1).scene()
 
 
 @dataclass(frozen=True)
 class Builder:
-    """Draws the parts of a room.
+    """Makes the parts of a random room.
 
     Parameters
     ----------
     random : numpy.random.Generator
     moves : bool
-        Whether some things move.
+        Whether some objects move.
     """
 
     random: np.random.Generator
     moves: bool
 
     def scene(self) -> Scene:
-        """The whole room; it is open towards the camera's side, where a faint sky shines in."""
+        """The whole room; it is open on the camera's side, where a faint sky shines in."""
         width, height, depth = self.random.uniform((4.0, 2.4, 4.0), (7.0, 3.6, 7.0))
         sky = self.random.uniform(0.02, 0.6, 3) if self.random.random() < 0.5 else np.zeros(3)
         things = [self.thing(width, depth) for _ in range(THINGS)]
@@ -66,7 +66,7 @@ class Builder:
         return [shapes.quad(*corner, painted(self.texture())) for corner in corners]
 
     def lamps(self, width: float, height: float, depth: float) -> list[Instance]:
-        """One to three panels below the ceiling, of any size, which give about as much light in all."""
+        """One to three panels of any size below the ceiling, with about the same total light."""
         count = int(self.random.integers(1, 4))
         return [self.panel(width, height, depth, 12.0 / count) for _ in range(count)]
 
@@ -78,7 +78,7 @@ class Builder:
         return shapes.quad((x, height - 0.05, z), (size[0], 0, 0), (0, 0, size[1]), lamp(*map(float, radiance)))
 
     def thing(self, width: float, depth: float) -> Instance:
-        """Something that stands on the floor."""
+        """An object that stands on the floor."""
         x, z = self.random.uniform(-0.42, 0.42, 2) * (width, depth)
         size = float(np.exp(self.random.uniform(np.log(0.15), np.log(0.7))))
         kind, material = self.random.integers(5), self.material()
@@ -99,19 +99,19 @@ class Builder:
         return shapes.merged(bars, material, motion=motion)
 
     def motion(self) -> Motion:
-        """To and fro by up to a metre."""
+        """Motion to and fro by up to a metre."""
         x, y, z = self.random.uniform((-1.0, 0.0, -1.0), (1.0, 0.3, 1.0))
         return Motion.sliding((0.0, SECONDS / 2, SECONDS), np.array([(0, 0, 0), (x, y, z), (0, 0, 0)]))
 
     def material(self) -> Material:
-        """Matt, coated or metal."""
+        """A matt, coated or metal material."""
         kind, roughness = self.random.random(), float(self.random.uniform(0.15, 0.6))
         if kind < 0.55:
             return Material(self.colour())
         return metal(self.colour(), roughness) if kind < 0.7 else glazed(self.colour(), roughness)
 
     def colour(self) -> Colour:
-        """Any, most of them dull."""
+        """Any colour; most are dull."""
         red, green, blue = self.random.uniform(0.1, 0.85) * self.random.uniform(0.5, 1.0, 3)
         return float(red), float(green), float(blue)
 

@@ -1,4 +1,4 @@
-"""What LBF is trained on: accumulated noisy frames, what its network sees of them, and what they converge to."""
+"""Samples for training LBF: accumulated noisy frames, the statistics of its network, and references."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from svgf_cl.oracle.taps import Array, luminance, smoothed
 from svgf_cl.oracle.temporal import Guides, demodulate
 from svgf_cl_tracer.references import chunks
 
-JUDGED = (1, 4, 9)  # frames with a truth: the history is short, longer, and about as long as it gets
+JUDGED = (1, 4, 9)  # frames with a truth: with a short history, a longer one, and nearly the longest
 FRAMES = JUDGED[-1] + 1
 
 
@@ -30,7 +30,7 @@ class Sample:
     Parameters
     ----------
     light, truth : (H, W, 3)
-        Accumulated light without albedo, and what it converges to.
+        Accumulated light without albedo, and its truth.
     noise : (H, W)
         Variance of luminance.
     seen : (H, W, INPUTS)
@@ -47,20 +47,21 @@ class Sample:
 
 @dataclass(frozen=True)
 class Shots:
-    """Scenes as shots, and how well their truth is known.
+    """Scenes as shots, and the quality of their truths.
 
     Parameters
     ----------
     shape : (int, int)
     spp : int
-        Samples per pixel of a truth. Its noise is no matter to training: it is independent of the frames' noise.
+        Samples per pixel of a truth. Its noise does not matter for training, because it is independent of the frames'
+        noise.
     """
 
     shape: tuple[int, int]
     spp: int
 
     def chunks(self, count: int) -> int:
-        """How often `samples` advances for so many scenes."""
+        """The number of times that `samples` calls `advance` for `count` scenes."""
         return count * len(JUDGED) * chunks(self.spp)
 
     def samples(self, scene: svgf_cl_tracer.Scene, advance: Callable[[], None]) -> Iterator[Sample]:
@@ -90,7 +91,7 @@ def sample(frame: Frame, denoiser: Denoiser, truth: Array) -> Sample:
 
 
 def surroundings(samples: Sequence[Sample], slope_floor: float) -> Surroundings:
-    """All samples as a stack that compiled code reads."""
+    """All samples as a stack for compiled code."""
     deviations = [Deviations.of(each.guides, slope_floor) for each in samples]
     luma = [luminance(each.light) for each in samples]
     noise = [smoothed(each.noise[None], each.guides.hit)[0] for each in samples]
