@@ -3,8 +3,8 @@
     blender --background [SCENE.blend] --python examples/blender.py -- [FOLDER]
     python examples/blender.py [FOLDER] [--scene SCENE.blend]        # after `pip install bpy`
 
-Without a scene it builds a small one. The scene's file is not changed. svgf_cl need not be installed in Blender's own
-Python: `svgf-cl` is called as a command; if it is not on the PATH, name it with `--svgf-cl`.
+Without a scene, it builds a small one. The scene's file is not changed. Blender's own Python need not have svgf_cl,
+because `svgf-cl` is called as a command. If it is not on the PATH, name it with `--svgf-cl`.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ DATA_PASSES = {
     "Normal": "use_pass_normal",
     "Vector": "use_pass_vector",
     "Denoising Data": "cycles.denoising_store_passes",
-    "Cryptomatte Object": "use_pass_cryptomatte_object",  # tells things apart; may be left out
+    "Cryptomatte Object": "use_pass_cryptomatte_object",  # separates objects; may be left out
 }
-# The picture is their sum. They may be left out: then it is denoised as a whole, and loses detail in reflections.
+# These passes add up to the picture. Without them the picture is denoised as a whole, and reflections lose detail.
 LIGHT_PASSES = (
     *(f"use_pass_{kind}_{part}" for kind in ("diffuse", "glossy", "transmission") for part in ("direct", "indirect")),
     *(f"use_pass_{kind}_color" for kind in ("diffuse", "glossy", "transmission")),
@@ -39,7 +39,7 @@ LIGHT_PASSES = (
 
 
 def main() -> None:
-    """Render, denoise, and say where the pictures are."""
+    """Render, denoise, and print where the pictures are."""
     options = parsed()
     if options.scene:
         bpy.ops.wm.open_mainfile(filepath=str(options.scene))
@@ -57,7 +57,7 @@ def main() -> None:
 
 
 def parsed() -> argparse.Namespace:
-    """Read the options; inside Blender they are those behind ``--``."""
+    """Read the options; inside Blender these are the ones after ``--``."""
     before = "--" if "--" in sys.argv else sys.argv[-1] if bpy.app.binary_path else sys.argv[0]
     parser = argparse.ArgumentParser(prog="blender.py", description="Render in Blender and denoise.")
     parser.add_argument("folder", nargs="?", type=Path, default=Path("out/examples/blender"), help="gets the frames")
@@ -73,7 +73,7 @@ def parsed() -> argparse.Namespace:
 
 
 def set_up_rendering(scene: Any, samples: int, frames: int) -> None:
-    """Few samples with noise that differs from frame to frame, and no motion blur, with which Vector is empty."""
+    """Few samples, noise that differs between frames, and no motion blur, which would leave the pass Vector empty."""
     scene.render.engine = "CYCLES"
     scene.frame_end = scene.frame_start + frames - 1
     scene.render.use_motion_blur = False
@@ -84,14 +84,14 @@ def set_up_rendering(scene: Any, samples: int, frames: int) -> None:
 
 
 def switch_passes_on(layer: Any) -> None:
-    """Have a view layer write all passes."""
+    """Switch on all passes of a view layer."""
     for name in (*DATA_PASSES.values(), *LIGHT_PASSES):
         owner, _, switch = name.rpartition(".")
         setattr(layer.cycles if owner else layer, switch, True)
 
 
 def set_up_files(scene: Any, folder: Path) -> None:
-    """Write one OpenEXR file a frame that holds all passes; colours in half floats, which is enough for them."""
+    """Write one OpenEXR file per frame with all passes; colours are half floats, which is precise enough for them."""
     settings = scene.render.image_settings
     if hasattr(settings, "media_type"):  # Blender 5
         settings.media_type = "MULTI_LAYER_IMAGE"
@@ -100,11 +100,11 @@ def set_up_files(scene: Any, folder: Path) -> None:
     scene.render.filepath = str(folder / "frame_")
 
 
-# A scene, where none is given: balls of plaster, gold and glass on tiles; a cube turns, and the camera moves.
+# The scene if none is given: balls of plaster, gold and glass on tiles; a cube turns, and the camera moves.
 
 
 def build_scene() -> None:
-    """Make it in an empty file."""
+    """Build the scene in an empty file."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 480, 270, 100
@@ -142,7 +142,7 @@ def material(name: str, color: tuple[float, float, float], roughness: float, **i
 
 
 def tiled(surface: Any) -> Any:
-    """The same material with dark tiles."""
+    """Add dark tiles to a material, and return it."""
     nodes, links = surface.node_tree.nodes, surface.node_tree.links
     checker, color = nodes.new("ShaderNodeTexChecker"), nodes["Principled BSDF"].inputs["Base Color"]
     checker.inputs["Color1"].default_value = color.default_value
@@ -152,12 +152,12 @@ def tiled(surface: Any) -> Any:
 
 
 def show(surface: Any) -> None:
-    """Give the thing that was added last a material."""
+    """Give the material to the object that was added last."""
     bpy.context.object.data.materials.append(surface)
 
 
 def animate(thing: Any, what: str, start: tuple[float, ...], end: tuple[float, ...]) -> None:
-    """Change a property of a thing over the first eight frames."""
+    """Animate a property of an object over the first eight frames."""
     for frame, value in ((1, start), (8, end)):
         setattr(thing, what, value)
         thing.keyframe_insert(what, frame=frame)

@@ -1,4 +1,4 @@
-"""Mitsuba 3, interactively: each frame goes from the renderer to the denoiser as an array, without a file.
+"""Denoises frames of Mitsuba 3 while it renders: each frame goes to the denoiser as arrays, without a file.
 
 It needs `pip install mitsuba` in addition to svgf_cl. The camera moves through Mitsuba's own Cornell box.
 """
@@ -28,12 +28,12 @@ Array = npt.NDArray[np.float32]
 
 
 def main(folder: Path) -> None:
-    """Render and denoise some frames; write the last, noisy and denoised, and say how far each is from the truth."""
+    """Render and denoise some frames; write the last one, noisy and denoised, and print the errors of both."""
     scene = mi.load_dict(description())
-    # Rays go through random points of their pixels; `taa` makes smooth edges of them.
+    # Rays go through random points of their pixels; `taa` turns this into smooth edges.
     with Denoiser((SIZE, SIZE), settings=Kalman(taa=True)) as den:
         for frame in frames(scene):
-            clean = den.denoise(frame)  # (H, W, 3) float32, linear radiance: show it
+            clean = den.denoise(frame)  # (H, W, 3) float32, linear radiance: display it here
 
     truth = display(layers(scene, REFERENCE_SAMPLES, seed=FRAMES)["beauty"])
     print(f"PSNR of the last frame: noisy {psnr(display(frame.color), truth):.1f} dB, ", end="")
@@ -43,22 +43,22 @@ def main(folder: Path) -> None:
 
 
 def description() -> dict[str, object]:
-    """Mitsuba's Cornell box, with what the denoiser needs beside the picture."""
+    """Mitsuba's Cornell box, with the additional outputs that the denoiser needs."""
     box: dict[str, object] = mi.cornell_box()
     box["integrator"] = {
         "type": "aov",
         "aovs": "albedo:albedo,normal:sh_normal,position:position",
         "beauty": {"type": "path", "max_depth": 8},
     }
-    # A box as wide as a pixel: with any other filter a sample counts in several pixels, noise becomes blotches, and
-    # positions are mixed across edges.
+    # A box filter as wide as a pixel. With any other filter a sample contributes to several pixels, so noise becomes
+    # blotches, and positions are mixed across edges.
     film = {"type": "hdrfilm", "width": SIZE, "height": SIZE, "pixel_format": "rgb", "rfilter": {"type": "box"}}
     box["sensor"] = {"type": "perspective", "fov": FOV, "fov_axis": "smaller", "to_world": to_world(0), "film": film}
     return box
 
 
 def frames(scene: mi.Scene) -> Iterator[Frame]:
-    """Render the frames, each at one sample a pixel."""
+    """Render the frames, each with one sample per pixel."""
     parameters, previous = mi.traverse(scene), None
     for number in range(FRAMES):
         parameters["sensor.to_world"] = mi.Transform4f(to_world(number))
@@ -69,7 +69,7 @@ def frames(scene: mi.Scene) -> Iterator[Frame]:
 
 
 def as_frame(layer: dict[str, Array], camera: Camera, previous: Camera) -> Frame:
-    """The frame of what Mitsuba rendered. Mitsuba has no motion vectors: that of the camera is computed."""
+    """Make a frame from Mitsuba's layers. Mitsuba has no motion vectors, so motion is computed from the cameras."""
     hit = np.any(layer["normal"], axis=-1)
     depth = np.where(hit, camera.depth_at(layer["position"]), np.inf)
     return Frame.of(
@@ -82,10 +82,13 @@ def as_frame(layer: dict[str, Array], camera: Camera, previous: Camera) -> Frame
 
 
 def layers(scene: mi.Scene, samples: int, seed: int) -> dict[str, Array]:
-    """Render a frame: its layers (H, W, 3) by name. Its noise has to differ from frame to frame, and so the seed."""
+    """Render a frame, and return its layers (H, W, 3) by name.
+
+    Noise must differ between frames, so the seed must, too.
+    """
     rendered = np.array(mi.render(scene, spp=samples, seed=seed))
     found: dict[str, list[Array]] = {}
-    channels = [name for name in scene.integrator().aov_names() if name != "beauty.A"]  # the film holds no alpha
+    channels = [name for name in scene.integrator().aov_names() if name != "beauty.A"]  # the film has no alpha
     for channel, plane in zip(channels, np.moveaxis(rendered, -1, 0), strict=True):
         found.setdefault(channel.rpartition(".")[0], []).append(plane)
     return {name: np.stack(planes, axis=-1) for name, planes in found.items()}

@@ -25,12 +25,13 @@ def main(folder: Path) -> None:
                 color=made.color,  # (H, W, 3) noisy linear radiance; (H, W, 4) with alpha gives (H, W, 4)
                 normal=made.normal,  # (H, W, 3) in world space
                 depth=made.depth,  # (H, W) along the camera's axis
-                motion=made.motion,  # (H, W, 2) in pixels, previous minus current; or (H, W, 3) with that of depth
-                albedo=made.albedo,  # (H, W, 3), may be left out; keeps textures sharp
-                id=made.id,  # (H, W) integers, may be left out; keeps objects apart
+                # (H, W, 2) in pixels, previous minus current; or (H, W, 3) with the change of depth
+                motion=made.motion,
+                albedo=made.albedo,  # (H, W, 3), optional; keeps textures sharp
+                id=made.id,  # (H, W) integers, optional; separates objects
             )
-            clean = den.denoise(frame)  # (H, W, 3) float32: linear radiance, too
-            # At a cut to another view: den.reset()
+            clean = den.denoise(frame)  # (H, W, 3) float32, also linear radiance
+            # At a cut to another view, call den.reset()
 
     truth = display(0.5 * made.albedo)  # the room is evenly lit
     print(f"PSNR of the last frame: noisy {psnr(display(made.color), truth):.1f} dB, ", end="")

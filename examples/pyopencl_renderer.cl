@@ -1,14 +1,14 @@
-// A path tracer of one bounce in one kernel: balls on a tiled floor under a square lamp and a bright sky. It writes all
-// that the denoiser reads as one image of 16 channels, and ids as another.
+// A path tracer with one bounce in one kernel: balls on a tiled floor under a square lamp and a bright sky. It writes
+// all fields for the denoiser into one image of 16 channels, and ids into another image.
 
 #define BALLS 5
-#define FLOOR BALLS                          // number of the floor, behind those of the balls
-#define MISS (BALLS + 1)                     // of the sky
-#define LAMP ((float3)(-1.0f, 5.0f, -4.0f))  // its middle; it shines downwards
+#define FLOOR BALLS                          // the number of the floor, after those of the balls
+#define MISS (BALLS + 1)                     // the number of the sky
+#define LAMP ((float3)(-1.0f, 5.0f, -4.0f))  // the lamp's middle; it shines downwards
 #define LAMP_SIDE 2.0f
 #define LAMP_RADIANCE 20.0f
-#define FOCAL_LENGTH 1.2f  // in image heights
-#define TILT 0.3f          // how far down the picture is shifted, as by a shift lens
+#define FOCAL_LENGTH 1.2f  // in heights of the image
+#define TILT 0.3f          // how far the picture is shifted down, as by a shift lens
 #define EPSILON 1e-3f
 
 typedef struct {
@@ -28,7 +28,7 @@ __constant float4 REST[BALLS] = {  // middle and radius
 __constant float3 PAINT[BALLS] = {(float3)(0.8f, 0.75f, 0.2f), (float3)(0.75f, 0.2f, 0.15f), (float3)(0.7f, 0.7f, 0.7f),
                                   (float3)(0.2f, 0.35f, 0.7f), (float3)(0.25f, 0.6f, 0.25f)};
 
-// PCG, Jarzynski and Olano 2020: a number in 0..1.
+// A random number in 0..1 (PCG, Jarzynski and Olano 2020).
 float next(uint *state) {
     *state = *state * 747796405u + 2891336453u;
     const uint word = ((*state >> ((*state >> 28) + 4u)) ^ *state) * 277803737u;
@@ -65,7 +65,7 @@ float3 albedo(Hit hit) {
     return dark ? (float3)(0.15f, 0.15f, 0.17f) : (float3)(0.7f, 0.66f, 0.6f);
 }
 
-// Irradiance over pi from a random point of the lamp.
+// Irradiance divided by pi from a random point of the lamp.
 float3 lamplight(Moment now, Hit hit, uint *state) {
     const float3 on_lamp = LAMP + LAMP_SIDE * ((float3)(next(state), 0.5f, next(state)) - 0.5f);
     const float3 way = on_lamp - hit.point, towards = normalize(way);
@@ -74,13 +74,13 @@ float3 lamplight(Moment now, Hit hit, uint *state) {
     return (float3)(LAMP_RADIANCE * LAMP_SIDE * LAMP_SIDE * M_1_PI_F) * cosines / dot(way, way);
 }
 
-// A direction over a surface, with a density proportional to its cosine.
+// A direction above a surface, with a density proportional to its cosine.
 float3 scatter(float3 normal, uint *state) {
     const float z = 2.0f * next(state) - 1.0f, turn = 2.0f * M_PI_F * next(state), r = sqrt(max(1.0f - z * z, 0.0f));
     return normalize(normal + 0.999f * (float3)(r * cos(turn), r * sin(turn), z));
 }
 
-// Radiance that leaves a surface: from the lamp, and from all around by one bounce.
+// Radiance that leaves a surface: light of the lamp, and light from other directions with one bounce.
 float3 shade(Moment now, Hit hit, uint *state) {
     const float3 towards = scatter(hit.normal, state);
     const Hit other = trace(now, hit.point, towards);
@@ -88,7 +88,7 @@ float3 shade(Moment now, Hit hit, uint *state) {
     return albedo(hit) * (lamplight(now, hit, state) + around);
 }
 
-// x and y of the pixel at which a moment sees a point, and the point's depth.
+// x and y of the pixel in which a point is seen at a moment, and the point's depth.
 float3 project(Moment seen, float3 point, float2 size) {
     const float3 p = point - seen.eye;
     const float depth = -p.z, focal = FOCAL_LENGTH * size.y;
@@ -123,7 +123,7 @@ __kernel void render(const float4 eye, const float4 ball, const float4 last_eye,
     vstore3(albedo(hit), 0, aov + 11);
     ids[pixel] = hit.what == MISS ? 0u : (uint)hit.what + 1u;
 
-    // Where this point of the surface was a frame ago, minus where it is; the sky is too far away to move.
+    // The position of this point in the previous frame minus its position now; the sky is too far away to move.
     const float3 here = project(now, hit.point, size);
     const float3 before = hit.what ? hit.point : hit.point + last.ball - now.ball;
     aov[7] = hit.what == MISS ? INFINITY : here.z;

@@ -17,7 +17,7 @@ from svgf_cl.io.display import display, to_bytes, write_image
 
 HEIGHT, WIDTH = 288, 512
 FRAMES = 24
-TRUTH_SAMPLES = 128  # a pixel
+TRUTH_SAMPLES = 128  # per pixel
 CHANNELS = 16
 
 
@@ -28,20 +28,20 @@ class Renderer:
         source = Path(__file__).with_suffix(".cl").read_text(encoding="utf-8")
         self._queue = queue
         self._kernel = cl.Kernel(cl.Program(queue.context, source).build(["-cl-std=CL1.2"]), "render")
-        # All AOVs as one image, as many renderers have them, and ids in a buffer of their own.
+        # All AOVs are in one image, as in many renderers; ids have their own buffer.
         self._stack = cl.Buffer(queue.context, cl.mem_flags.READ_WRITE, 4 * HEIGHT * WIDTH * CHANNELS)
         self.aovs = cl_array.Array(queue, (HEIGHT, WIDTH, CHANNELS), np.float32, data=self._stack)
         self.ids = cl.Buffer(queue.context, cl.mem_flags.READ_WRITE, 4 * HEIGHT * WIDTH)
 
     def render(self, number: int, samples: int = 1) -> None:
-        """Put a frame on the queue; its noise depends on its number and on how many samples a pixel has."""
+        """Put a frame on the queue; its noise depends on the frame's number and on the number of samples per pixel."""
         moments = (*moment(number), *moment(number - 1))
         numbers = np.int32(samples), np.uint32(number + (samples << 16))
         self._kernel(self._queue, (WIDTH, HEIGHT), None, *moments, *numbers, self._stack, self.ids)
 
 
 def moment(number: int) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
-    """Where the camera is at a frame, and the ball."""
+    """The positions of the camera and the ball in a frame."""
     t = number / 24
     eye = (-0.5 + 0.8 * t, 1.3, 0.5 - 0.5 * t, 0)
     ball = (-2 + 3 * t, 0.5 + abs(math.sin(4 * t)), -4, 0)
@@ -49,24 +49,24 @@ def moment(number: int) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32
 
 
 def main(folder: Path) -> None:
-    """Render and denoise some frames; write the last, and say how far it is from one of many samples."""
+    """Render and denoise some frames; write the last one, and print its difference from a frame with many samples."""
     den = Denoiser((HEIGHT, WIDTH))  # or Denoiser(shape, queue=...) with a queue of your own
     renderer = Renderer(den.queue)
     aovs = renderer.aovs
 
-    # Views say where each field is; nothing is copied here. Made once, they serve every frame.
+    # Views say where each field is, without a copy. They are made once, and serve for all frames.
     frame = Frame.of(
-        color=aovs[..., 0:4],  # with alpha, which the result has too
+        color=aovs[..., 0:4],  # with alpha, so the result has alpha, too
         normal=aovs[..., 4:7],
         depth=aovs[..., 7],
         motion=aovs[..., 8:11],
         albedo=aovs[..., 11:14],
-        id=(renderer.ids, (HEIGHT, WIDTH)),  # a bare buffer does not know its shape
+        id=(renderer.ids, (HEIGHT, WIDTH)),  # a bare buffer has no shape
     )
     clean = cl_array.empty(den.queue, (HEIGHT, WIDTH, 4), np.float32)
     for number in range(FRAMES):
         renderer.render(number)
-        # Waits for nothing: the queue does one thing after the other. For a renderer on a queue of its own, give the
+        # This does not wait: the queue runs one command after the other. If your renderer has its own queue, pass the
         # event of its last kernel as wait_for=[event].
         den.denoise(frame, out=clean)
 

@@ -1,7 +1,7 @@
-"""Builds the source archive and the wheel, and checks both as a stranger meets them: `make package`.
+"""Builds the source archive and the wheel, and checks both: `make package`.
 
-The archive holds the repository, the wheel all of the packages; a package index takes both. In a new environment, in
-another folder, the wheel alone runs the example of README.md and names what its other commands need.
+The archive contains the repository, the wheel contains all packages, and a package index accepts both. In a new
+environment, in another folder, the wheel alone runs the example of README.md, and says what its other commands need.
 """
 
 from __future__ import annotations
@@ -23,20 +23,20 @@ import typer
 from svgf_cl import __version__
 
 ROOT = Path(__file__).parents[1]
-MADE = re.compile(r"PKG-INFO|setup\.cfg|svgf_cl\.egg-info/.*")  # what setuptools adds to the archive
-# Where the wheel has the packages of the repository.
+MADE = re.compile(r"PKG-INFO|setup\.cfg|svgf_cl\.egg-info/.*")  # files that setuptools adds to the archive
+# The folders of the packages in the repository, and in the wheel.
 PACKAGES = {"svgf_cl/": "svgf_cl/", "kernels/": "svgf_cl/kernels/", "tracer/svgf_cl_tracer/": "svgf_cl_tracer/"}
 
 
 def tracked() -> set[str]:
-    """Every file of the repository, and those that are about to be added."""
+    """All files of the repository, including those that are about to be added."""
     command = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
     listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout.splitlines()
     return {name for name in listed if (ROOT / name).is_file()}
 
 
 def build(names: Iterable[str], output: Path) -> tuple[Path, Path]:
-    """Build the archive from files of the repository, and the wheel from the archive; return both."""
+    """Build the archive from these files, and the wheel from the archive; return the paths of both."""
     with tempfile.TemporaryDirectory() as folder:
         for name in names:
             (Path(folder) / name).parent.mkdir(parents=True, exist_ok=True)
@@ -47,14 +47,14 @@ def build(names: Iterable[str], output: Path) -> tuple[Path, Path]:
 
 
 def check_same(what: str, expected: set[str], found: set[str]) -> None:
-    """Fail where `what` lacks a file or has one too many."""
+    """Fail if `what` lacks a file or has an additional one."""
     if expected != found:
         lacks, extra = sorted(expected - found), sorted(found - expected)
         sys.exit(f"{what}: expected the files of the repository; it lacks {lacks} and has {extra} beside them")
 
 
 def check_source(archive: Path, names: set[str]) -> None:
-    """The archive holds the repository, but for what only a forge or an editor reads: names with a dot in front."""
+    """The archive contains the repository, except files for a forge or an editor, whose names begin with a dot."""
     with tarfile.open(archive) as opened:
         found = {each.name.partition("/")[2] for each in opened.getmembers() if each.isfile()}
     check_same(
@@ -65,7 +65,7 @@ def check_source(archive: Path, names: set[str]) -> None:
 
 
 def check_wheel(wheel: Path, names: set[str]) -> None:
-    """The wheel holds every file of the packages and nothing else; its description links to no file beside it."""
+    """The wheel contains all files of the packages and nothing else; its description has no links to local files."""
     with zipfile.ZipFile(wheel) as opened:
         found = opened.namelist()
         (described,) = (name for name in found if name.endswith(".dist-info/METADATA"))
@@ -78,7 +78,7 @@ def check_wheel(wheel: Path, names: set[str]) -> None:
 
 
 def check_use(wheel: Path, python: str) -> None:
-    """A stranger's first minute: install the wheel, run README's example, ask for what is not installed."""
+    """Use the wheel as a new user would: install it, run README's example, call commands that need more packages."""
     (example,) = re.findall(r"^```python\n(.*?)^```", (ROOT / "README.md").read_text(), re.DOTALL | re.MULTILINE)
     with tempfile.TemporaryDirectory() as folder:
         bin_folder = Path(folder) / "env" / "bin"
@@ -99,7 +99,7 @@ def check_use(wheel: Path, python: str) -> None:
 
 
 def run(*command: str | Path, cwd: str | None = None, quiet: bool = False) -> None:
-    """Run a command, which must succeed; where it is quiet, show what it said only if it fails."""
+    """Run a command, which must succeed; if `quiet`, show its output only if it fails."""
     told = subprocess.PIPE if quiet else None
     ran = subprocess.run(command, cwd=cwd, stdout=told, stderr=subprocess.STDOUT if quiet else None, check=False)
     if ran.returncode:

@@ -1,5 +1,6 @@
-"""Checks with clang every kernel for all that frames may supply, and with clang-format how kernels are written; needs
-no OpenCL device.
+"""Checks all kernels with clang, for all fields that frames may have, and their format with clang-format.
+
+It needs no OpenCL device.
 """
 
 from __future__ import annotations
@@ -27,14 +28,15 @@ TUNINGS = [
     for exponential in EXPONENTIALS
     for width in VECTOR_WIDTHS
 ]
-# These and the tuning say how something is done, not what there is: one value against another, and all at once, do.
+# These settings and the tuning change how something is done, not what is there. Each value is tried, but not every
+# combination.
 SETTINGS: tuple[dict[str, Any], ...] = (
     {"precision": "precise", "taps": "5x5", "standard_error": True},
     {"precision": "fast", "taps": "5x5", "half_history": True},
     {"precision": "precise", "taps": "3x3", "half_guides": True},
     {"precision": "fast", "taps": "3x3", "half_guides": True, "half_history": True},
 )
-# -Wundef: a macro that a kernel reads and no filter gives it is an error, never a silent 0.
+# -Wundef: a macro that a kernel uses and that no filter defines is an error, not a silent 0.
 LANGUAGE = ("-x", "cl", "-cl-std=CL1.2", "-target", "spir64", "-Xclang", "-finclude-default-header")
 WARNINGS = (
     *("-Wall", "-Wextra", "-Wconversion", "-Wundef", "-Wshadow", "-Wcast-qual", "-Wdouble-promotion"),
@@ -47,15 +49,15 @@ FORMATTED = ("kernels/*.cl", "kernels/*.clh", "svgf_cl/bench/*.cl", "examples/*.
 
 
 def inputs() -> Iterator[Inputs]:
-    """All that frames may supply."""
+    """All combinations of fields that frames may have."""
     for signals, motion, albedo, emission, id_ in itertools.product(SPLITS, (2, 3), EITHER, EITHER, EITHER):
         yield Inputs(signals=signals, motion=motion, albedo=albedo, emission=emission, id=id_)
 
 
 def variants() -> list[Build]:
-    """Every source that no filter chooses; each of a filter with the macros of all that frames may supply.
+    """All builds that do not depend on a filter, and the builds of each filter for all combinations of fields.
 
-    Settings and tunings are drawn for each of these: the product of all would take minutes, and finds no more.
+    Settings and tunings are chosen in turn for these builds: the product of all would take minutes, and find no more.
     """
     draw = random.Random(0)
     return builds(
@@ -65,20 +67,20 @@ def variants() -> list[Build]:
 
 
 def variant(kind: type[Filter], wanted: dict[str, Any]) -> Filter:
-    """A filter with those of the settings that it has."""
+    """A filter with those of the wanted settings that it has."""
     return kind(**{name: value for name, value in wanted.items() if name in domains(kind)})
 
 
 def check(build: Build) -> str:
-    """Clang's complaints about a source, empty if there are none."""
+    """The messages of clang about a source, empty if there are none."""
     command = ["clang", "-fsyntax-only", *LANGUAGE, *WARNINGS, *build.macros, "-"]
     clang = subprocess.run(command, input=programs.source(build.source), text=True, capture_output=True)
     return f"kernels/{build.source}.cl with {' '.join(build.macros)}:\n{clang.stderr}" if clang.returncode else ""
 
 
 def unformatted() -> str:
-    """Clang-format's complaints, empty if there are none."""
-    # That beside this Python is of the version that pyproject.toml asks for; each lays things out in a way of its own.
+    """The messages of clang-format, empty if there are none."""
+    # Use the clang-format of this Python, which has the version of pyproject.toml; other versions format differently.
     clang_format = shutil.which("clang-format", path=str(Path(sys.executable).parent))
     if clang_format is None:
         return "clang-format is missing beside this Python; install the project's dev extra"

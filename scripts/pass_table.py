@@ -1,4 +1,4 @@
-"""Writes the passes and buffers of every filter into docs/algorithm.md, from the filters' own declarations."""
+"""Writes the tables of passes and buffers of every filter into docs/algorithm.md, from the filters' declarations."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def section(kind: type[Filter]) -> Iterable[str]:
 
 
 def pass_row(entry: Pass, first: Pass) -> list[str]:
-    """One pass; of its numbers those that are not the same in the `first` of its kind."""
+    """The row of a pass; of its numbers, only those that differ from the `first` pass of its kind."""
     spent = cost(entry)
     own = entry.scalars.items() if entry is first else entry.scalars.items() - first.scalars.items()
     numbers = ", ".join(f"{name} = {value:g}" for name, value in own)
@@ -64,26 +64,26 @@ def pass_row(entry: Pass, first: Pass) -> list[str]:
 
 
 def shown(access: Access) -> str:
-    """What a pass reads or writes of one buffer or array of the user's; empty where it counts nothing."""
+    """What a pass reads or writes of a buffer or user's array; empty if the access does not count."""
     if isinstance(access.of, Buffer):
         return f"{access.of}: {', '.join(map(tapped, access.uses))}" if access.uses else ""
     return "the result" if access.of == OUT else f"`Frame.{access.of}`"
 
 
 def tapped(use: Use) -> str:
-    """A quantity, and the pixels at which it is needed."""
+    """A quantity, and the pixels where it is needed."""
     return use.quantity.name + taps_text(use.taps)
 
 
 def taps_text(taps: Taps) -> str:
-    """Pixels beside a quantity's name."""
+    """The text about pixels after a quantity's name."""
     if taps == HERE:
         return ""
     return f"@{len(taps.offsets)}" + (" moved" if taps.follow_motion else f"±{taps.reach}")
 
 
 def buffer_row(resource: Resource) -> list[str]:
-    """One buffer."""
+    """The row of a buffer."""
     formats = dict.fromkeys(str(quantity.format.dtype) for quantity in resource.quantities)
     size = f"{sum(quantity.nbytes for quantity in resource.quantities) / resource.spacing**2:g}"
     quantities = ", ".join(map(planes_text, resource.quantities))
@@ -91,12 +91,12 @@ def buffer_row(resource: Resource) -> list[str]:
 
 
 def planes_text(quantity: Quantity) -> str:
-    """A quantity, and how many numbers it has."""
+    """A quantity, and its number of channels."""
     return quantity.name if quantity.planes == 1 else f"{quantity.name} ({quantity.planes})"
 
 
 def memory(pipeline: Pipeline) -> str:
-    """Which buffers share the same memory."""
+    """The total memory, and which buffers share the same memory."""
     slots = memory_slots(pipeline)
     shared = [", ".join(map(str, slot.buffers)) for slot in slots if len(slot.buffers) > 1]
     total = sum(slot.planes.depth / slot.spacing**2 for slot in slots) / 8
@@ -105,7 +105,7 @@ def memory(pipeline: Pipeline) -> str:
 
 
 def joined(parts: Iterable[str]) -> str:
-    """Parts that are not empty, one beside the other."""
+    """The parts that are not empty, joined."""
     return "; ".join(filter(None, parts))
 
 

@@ -1,6 +1,6 @@
-"""Writes docs/demo.png, the README's picture, from what `svgf-cl demo` left in out/demo.
+"""Writes docs/demo.png, the README's picture, from the output of `svgf-cl demo` in out/demo.
 
-Left noisy, in the middle SVGF as in its paper, right the default filter, the last two with temporal antialiasing.
+Left: noisy. Middle: SVGF as in its paper. Right: the default filter. The last two have temporal antialiasing.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ PAPER = Settings(taps="5x5", taa=True)
 
 
 def main() -> None:
-    """Compose and write the picture, the noise in 16 steps a channel: it does not compress otherwise."""
+    """Make and write the picture; its noise has only 16 steps per channel, because it would not compress otherwise."""
     noisy, denoised = (read_picture(frame_path(DEMO / kind, FRAME)) for kind in ("noisy", "denoised"))
     width = noisy.shape[1]
     stripes = [to_bytes(noisy) // 17 * 17, to_bytes(as_in_the_paper()), to_bytes(denoised)]
@@ -35,7 +35,7 @@ def main() -> None:
 
 
 def as_in_the_paper() -> Linear:
-    """The demo's frame as SVGF makes it."""
+    """The demo's frame, denoised by SVGF as in its paper."""
     paths = [frame_path(DEMO / "noisy", number) for number in range(FRAME + 1)]
     with Denoiser(read_picture(paths[0]).shape[:2], settings=PAPER) as denoiser:
         pictures = [np.asarray(denoiser.denoise(read_frame(path))) for path in paths]
@@ -43,7 +43,7 @@ def as_in_the_paper() -> Linear:
 
 
 def line_before(stripe: Bytes) -> Bytes:
-    """A white line of two pixels in front of a part of the picture."""
+    """A part of the picture with a white line of two pixels on its left."""
     return np.hstack([np.full_like(stripe[:, :2], 255), stripe])
 
 

@@ -5,9 +5,9 @@ r"""Writes the pictures of docs/renderers from folders of frames: noisy, denoise
     python -m scripts.renderer_pictures docs/renderers/mitsuba.webp \
         samples/mitsuba:30,0,172,144 cases/mitsuba/materials
 
-Each folder is a row. It has frames in ``noisy`` and what they converge to in ``reference``, as those that
-`scripts/renderers` renders; the last frame that has a reference is shown, as `svgf-cl denoise` without any option makes
-it. A part of it is shown where a folder is given as ``FOLDER:X,Y,W,H``, in pixels.
+Each folder is a row. It has noisy frames in ``noisy`` and references in ``reference``, as rendered by
+`scripts/renderers`. The last frame that has a reference is shown, denoised by `svgf-cl denoise` without options. With
+``FOLDER:X,Y,W,H``, in pixels, a part of the frame is shown.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from svgf_cl.io.display import Bytes, to_bytes
 from svgf_cl.io.reading import ReadAs
 from svgf_cl.io.sequence import find_frames, find_numbered, number_of
 
-WIDTH = 320  # of a picture, in pixels; parts are magnified to it without smoothing
+WIDTH = 320  # of a picture, in pixels; parts are enlarged to it without smoothing
 GAP = 4
 QUALITY = 82
 
 
 def main() -> None:
-    """Compose and write a picture."""
+    """Make and write a picture."""
     parser = argparse.ArgumentParser(description="Write a picture of frames before and after, beside the reference.")
     parser.add_argument("target", type=Path)
     parser.add_argument("folders", nargs="+", metavar="FOLDER[:X,Y,W,H]")
@@ -44,13 +44,13 @@ def main() -> None:
 
 
 def parsed(text: str) -> tuple[Path, tuple[int, ...]]:
-    """A folder, and the part of its frames to show; all of them where it does not say."""
+    """A folder, and the part of its frames to show; by default the whole frame."""
     folder, _, part = text.partition(":")
     return Path(folder), tuple(map(int, part.split(","))) if part else ()
 
 
 def row(folder: Path, part: tuple[int, ...]) -> Bytes:
-    """Noisy, denoised and reference of a folder's last frame that has one, side by side."""
+    """Noisy, denoised and reference side by side, of the last frame in a folder that has a reference."""
     truths = {number_of(path): path for path in find_numbered(folder / "reference", "reference")}
     last = max(truths)
     truth, layer = reference(truths[last])
@@ -62,7 +62,7 @@ def row(folder: Path, part: tuple[int, ...]) -> Bytes:
 
 
 def enlarged(picture: Bytes, part: tuple[int, ...]) -> Bytes:
-    """The part of a picture, as wide as all others."""
+    """The part of a picture, enlarged to the common width."""
     x, y, width, height = part or (0, 0, picture.shape[1], picture.shape[0])
     cut = Image.fromarray(picture[y : y + height, x : x + width])
     resampling = Image.Resampling.NEAREST if part else Image.Resampling.LANCZOS

@@ -1,6 +1,8 @@
-"""Runs the tests on every OpenCL implementation, each in a process of its own, then measures every kernel on all of
-them against the oracle: `make test-all`. With ``--brief``, as in CI, all tests run on PoCL, elsewhere those of every
-kernel, and nothing is measured: the tests hold every error to its tolerance.
+"""Runs the tests on every OpenCL implementation, then compares every kernel with the oracle on all of them.
+
+This is `make test-all`; each implementation has its own process. With ``--brief``, as in CI, all tests run on PoCL and
+only the tests of kernels on other implementations. Nothing is measured then, because the tests check the tolerance of
+every error.
 """
 
 from __future__ import annotations
@@ -17,12 +19,12 @@ OPTIONS = ("-n", "auto", "--maxprocesses", "8", "--durations", "12", "--duration
 
 
 def ends_well(*module: str, environment: Environment | None = None) -> bool:
-    """Run a module of Python with these arguments."""
+    """Run a Python module with these arguments, and return whether it succeeded."""
     return subprocess.run([sys.executable, "-m", *module], env=environment).returncode == 0
 
 
 def main() -> None:
-    """Run all of it, or the brief choice; exit code 1 names where it failed."""
+    """Run everything, or the brief choice; the exit code is 1 if something failed."""
     brief = sys.argv[1:] == ["--brief"]
     failed = []
     with tempfile.TemporaryDirectory() as folder:

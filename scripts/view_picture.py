@@ -1,4 +1,7 @@
-"""Writes docs/view.webp, the picture of `svgf-cl view`, from what `svgf-cl demo` left in out/demo: needs Chromium."""
+"""Writes docs/view.webp, the picture of `svgf-cl view`, from the output of `svgf-cl demo` in out/demo.
+
+Needs Chromium.
+"""
 
 from __future__ import annotations
 
@@ -22,12 +25,12 @@ from tests.browser import browser
 
 DEMO = Path("out/demo")
 TARGET = Path("docs/view.webp")
-FRAME = 15  # which has a reference
+FRAME = 15  # a frame with a reference
 SIZE = 1400, 840
 
-QUALITY = 75  # of the WebP: text stays sharp
+QUALITY = 75  # of the WebP; text stays sharp
 
-# Play up to the frame.
+# Play up to the frame FRAME.
 PLAYED = f"""new Promise(done => {{
   const number = document.querySelector("#frame");
   const wait = () => number.value.startsWith("frame {FRAME} ") ? done() : requestAnimationFrame(wait);
@@ -36,7 +39,7 @@ PLAYED = f"""new Promise(done => {{
 
 
 def main() -> None:
-    """Let the page show a frame, and write what is seen."""
+    """Let the page show a frame, and write a screenshot."""
     with served() as url, TemporaryDirectory() as profile, browser(Path(profile)) as tab:
         tab.open(url, *SIZE)
         tab.ask(PLAYED)
@@ -49,7 +52,7 @@ def main() -> None:
 
 @contextmanager
 def served() -> Iterator[str]:
-    """The address of the page while it is served."""
+    """Serve the page, and yield its address."""
     command = [sys.executable, "-m", "svgf_cl", *viewing(DEMO)[1:], "--no-browser"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
@@ -60,7 +63,7 @@ def served() -> Iterator[str]:
 
 
 def address(said: IO[str]) -> str:
-    """The address in the line that names it."""
+    """The address in the output of `svgf-cl view`."""
     return next(word for line in said for word in line.split() if word.startswith("http://"))
 
 

@@ -5,14 +5,14 @@
 
 #include "files.h"
 
-#define LARGEST 9007199254740992.0 /* up to which a double holds every whole number */
+#define LARGEST 9007199254740992.0 /* up to this, a double holds every whole number */
 enum { DEEPEST = 64 };
 
 static json *read_value(char **at, int depth);
 
 static void skip_space(char **at) { *at += strspn(*at, " \t\r\n"); }
 
-/* Reads a string in its place, without its quotes and escapes. Only ASCII is written with \u in a plan. */
+/* Reads a string in place, and removes its quotes and escapes. Plans use \u only for ASCII. */
 static const char *read_string(char **at) {
     static const char codes[] = "\"\\/bfnrt", values[] = "\"\\/\b\f\n\r\t";
     char *from = *at, *to, *begin;
@@ -41,7 +41,7 @@ static const char *read_string(char **at) {
     return begin;
 }
 
-/* Reads what stands between brackets; of an object with the names before. */
+/* Reads the elements of an array, or the members of an object with their names. */
 static int read_elements(char **at, json *list, int depth) {
     const char end = list->kind == JSON_ARRAY ? ']' : '}';
     json **next = &list->first;
@@ -78,7 +78,7 @@ static int read_word(char **at, const char *word) {
 static int read_number(char **at, double *number) {
     char *end;
     if (!strchr("-0123456789", **at) || !**at) return 0;
-    *number = strtod(*at, &end); /* as the C locale has it, which a program has that never calls setlocale */
+    *number = strtod(*at, &end); /* this uses the C locale, because the program never calls setlocale */
     if (end == *at) return 0;
     *at = end;
     return 1;

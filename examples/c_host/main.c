@@ -1,4 +1,4 @@
-/* Denoises raw frames by a plan that `svgf-cl export` wrote, with nothing but OpenCL.
+/* Denoises raw frames with a plan that `svgf-cl export` wrote, with nothing but OpenCL.
 
    svgf_host PLAN FRAMES OUT [CUT ...]
 
@@ -55,7 +55,7 @@ int main(int argc, char **argv) {
     plan p = plan_open(argv[1], find_device());
     const json *arrays = json_member(p.json, "arrays"); /* the inputs, then the output */
     const size_t inputs = json_count(arrays) - 1, size = json_member_size(json_element(arrays, inputs), "bytes");
-    void *staging = take(size); /* no input is larger than the output, of three floats a pixel */
+    void *staging = take(size); /* no input is larger than the output, which has three floats per pixel */
     char name[LONGEST_NAME];
     int number = 1;
     for (; has_file(argv[2], name_of(name, number, arrays->first)); ++number) {

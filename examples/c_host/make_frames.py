@@ -1,4 +1,4 @@
-"""Write noisy frames of the built-in room as the raw files that svgf_host reads; stands in for your renderer."""
+"""Writes noisy frames of the built-in room as the raw files that svgf_host reads; replace it by your renderer."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from svgf_cl.io.synthetic import room_frames
 
 
 def main(plan: Path, folder: Path, count: int) -> None:
-    """Write the inputs of a plan for so many frames: FOLDER/0001.color.raw and so on."""
+    """Write the inputs of a plan for `count` frames: FOLDER/0001.color.raw and so on."""
     arrays = json.loads((plan / "plan.json").read_text(encoding="utf-8"))["arrays"]
     inputs = [array for array in arrays if not array["is_output"]]
     height, width = inputs[0]["shape"][:2]

@@ -1,4 +1,4 @@
-/* Opens and runs a plan. Whatever the host is written in, these are the steps: docs/export.md. */
+/* Opens and runs a plan, in the steps of docs/export.md, which are the same in any language. */
 #include "plan.h"
 
 #include <stdlib.h>
@@ -9,8 +9,8 @@
 enum { FORMAT = 1, LONGEST_OPTIONS = 1024, LONGEST_LOG = 1 << 16, LONGEST_PATTERN = 16 };
 
 typedef struct launch {
-    cl_kernel kernels[TURNS]; /* each keeps its own arguments, so that a frame sets none but its number */
-    int frame_number;         /* which argument that is; -1 where the kernel has none */
+    cl_kernel kernels[TURNS]; /* one for each turn, with its own arguments, so that a frame only sets its number */
+    int frame_number;         /* the index of this argument; -1 if the kernel has none */
     size_t global_size[2], local_size[2];
 } launch;
 
@@ -18,7 +18,7 @@ void check(cl_int error, const char *what) {
     if (error) die("%s failed with OpenCL error %d", what, (int)error);
 }
 
-/* A buffer for each element of a list, of its size; all zeros. */
+/* Makes a buffer for each element of a list, of its size, filled with zeros. */
 static cl_mem *make_buffers(const plan *p, const json *list) {
     cl_mem *buffers = take(sizeof *buffers * json_count(list)), *next = buffers;
     const cl_uint zero = 0;
@@ -63,7 +63,7 @@ static cl_program build(const plan *p, const char *name) {
     return program;
 }
 
-/* Sets an argument for one turn. Says whether it is the frame's number, which every frame sets anew. */
+/* Sets an argument for one turn. Returns whether it is the frame's number, which every frame sets anew. */
 static int set_argument(const plan *p, cl_kernel kernel, cl_uint index, const json *argument, size_t turn) {
     const char *kind = json_text(json_member(argument, "kind"));
     cl_float single;
@@ -103,7 +103,7 @@ static void prepare(const plan *p, launch *made, const json *described, cl_progr
         for (const json *each = json_member(described, "arguments")->first; each; each = each->next, ++index)
             if (set_argument(p, made->kernels[turn], (cl_uint)index, each, turn)) made->frame_number = index;
     }
-    /* The work-group is cut to what the device can run of this kernel; then all work-items are rounded up to it. */
+    /* Reduce the work-group to what the device can run of this kernel, then round the work-items up to a multiple. */
     size_t most, *local = made->local_size;
     check(clGetKernelWorkGroupInfo(made->kernels[0], p->device, CL_KERNEL_WORK_GROUP_SIZE, sizeof most, &most, NULL),
           "clGetKernelWorkGroupInfo");
@@ -138,7 +138,7 @@ plan plan_open(const char *folder, cl_device_id device) {
     launch *next = p.launches = take(sizeof *p.launches * json_count(launches));
     for (const json *each = launches->first; each; each = each->next)
         prepare(&p, next++, each, programs[json_member_size(each, "program")]);
-    while (count) clReleaseProgram(programs[--count]); /* kernels keep theirs */
+    while (count) clReleaseProgram(programs[--count]); /* kernels keep their programs */
     free(programs);
     return p;
 }

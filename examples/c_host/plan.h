@@ -6,7 +6,7 @@
 
 #include "json.h"
 
-enum { TURNS = 2 }; /* frames after which all memory is where it was */
+enum { TURNS = 2 }; /* the number of frames after which the two buffers of each pair are in the same places */
 
 typedef struct plan {
     const char *folder;
@@ -17,19 +17,19 @@ typedef struct plan {
     cl_command_queue queue;
     cl_mem *memory, *arrays, *constants; /* a buffer for each element of the lists of these names */
     struct launch *launches;
-    unsigned frames, since_cut; /* how many frames were run, in all and since the last cut */
+    unsigned frames, since_cut; /* the number of frames, in total and since the last cut */
 } plan;
 
-/* Ends the program where an OpenCL function, named by `what`, returned an error. */
+/* Ends the program if an OpenCL function, whose name is `what`, returned an error. */
 void check(cl_int error, const char *what);
 
-/* Builds all kernels and takes all memory. */
+/* Builds all kernels and allocates all memory. */
 plan plan_open(const char *folder, cl_device_id device);
 
-/* Puts the passes of the next frame on the queue; its inputs are in p->arrays, and its output comes there. */
+/* Puts the passes of the next frame on the queue. They read their inputs from p->arrays, and write the output there. */
 void plan_run(plan *p, int is_cut);
 
-/* Waits for what is on the queue, and gives all back. */
+/* Waits for the queue, and frees everything. */
 void plan_close(plan *p);
 
 #endif

@@ -1,8 +1,8 @@
-"""Renders short shots with Blender's Cycles, as a user of the renderer has them.
+"""Renders short shots with Blender's Cycles, with the settings of a typical user.
 
     python scripts/renderers/blender_cases.py CASE OUT
 
-Each case is a folder OUT/CASE: `noisy` at few samples with every pass, `reference` at many with the light passes.
+Each case is a folder OUT/CASE: `noisy` with few samples and all passes, `reference` with many and the light passes.
 It needs `pip install bpy`, 4.2 to 5.0; `multi_part` needs 5.0, and the cases of the compositor a 4.x.
 """
 
@@ -33,9 +33,9 @@ DATA_PASSES = ("z", "normal", "vector", "object_index", "cryptomatte_object", "c
 
 @dataclass(frozen=True)
 class Case:
-    """One shot: the scene, the samples a pixel, and how the renderer writes the noisy frames.
+    """One shot: the scene, the samples per pixel, and how the renderer writes the noisy frames.
 
-    Without samples for a reference it has none of its own: that of another case with the same scene serves.
+    A case without samples for a reference has no own reference; another case with the same scene has it.
     """
 
     scene: Callable[[], None]
@@ -46,7 +46,7 @@ class Case:
 
 
 def render(case: Case, out: Path) -> None:
-    """The noisy frames of one case, and the reference of its first view layer."""
+    """Render the noisy frames of a case, and the reference of its first view layer."""
     for name, samples, seed in (("noisy", case.samples, 0), ("reference", case.reference_samples, 4321)):
         if not samples:
             continue
@@ -76,7 +76,7 @@ def frame_settings(samples: int, seed: int, animated_seed: bool) -> None:
 
 
 def switch_passes_on(layer: Any, data: bool) -> None:
-    """The light passes of a view layer, and on demand those that describe the surface."""
+    """Switch on the light passes of a view layer, and with `data` also the passes about surfaces."""
     for name in LIGHT_PASSES:
         setattr(layer, name, True)
     layer.cycles.use_pass_volume_direct = layer.cycles.use_pass_volume_indirect = True
@@ -86,7 +86,7 @@ def switch_passes_on(layer: Any, data: bool) -> None:
 
 
 def multilayer(folder: Path) -> None:
-    """One OpenEXR file a frame that holds every pass, half float and zip."""
+    """Write one OpenEXR file per frame with all passes, half float and zip."""
     settings = bpy.context.scene.render.image_settings
     if hasattr(settings, "media_type"):  # Blender 5
         settings.media_type = "MULTI_LAYER_IMAGE"
@@ -98,28 +98,28 @@ def multilayer(folder: Path) -> None:
 
 
 def multi_part(folder: Path) -> None:
-    """One OpenEXR file a frame in which each pass is a part, as Blender 5 writes them by default."""
+    """Write one OpenEXR file per frame in which each pass is a part, the default of Blender 5."""
     multilayer(folder)
     bpy.context.scene.render.image_settings.use_exr_interleave = False
 
 
 def default_sockets(folder: Path) -> None:
-    """The compositor's File Output node, multilayer; each added socket keeps the name that Blender gives it."""
+    """Use the compositor's File Output node, multilayer; each socket keeps the name that Blender gives it."""
     file_output(folder, "shot_", "OPEN_EXR_MULTILAYER", lambda name: "Image")
 
 
 def named_sockets(folder: Path) -> None:
-    """The compositor's File Output node, multilayer; each socket has the name of its pass."""
+    """Use the compositor's File Output node, multilayer; each socket has the name of its pass."""
     file_output(folder, "shot_", "OPEN_EXR_MULTILAYER", lambda name: name)
 
 
 def separate_files(folder: Path) -> None:
-    """The compositor's File Output node; each pass is a file of its own."""
+    """Use the compositor's File Output node; each pass is a separate file."""
     file_output(folder, "", "OPEN_EXR", lambda name: f"{name}_")
 
 
 def file_output(folder: Path, stem: str, file_format: str, socket_name: Callable[[str], str]) -> None:
-    """Links every pass of the first view layer to a File Output node; its format keeps Blender's defaults."""
+    """Link every pass of the first view layer to a File Output node; its format keeps Blender's defaults."""
     scene = bpy.context.scene
     scene.use_nodes = True
     nodes, links = scene.node_tree.nodes, scene.node_tree.links

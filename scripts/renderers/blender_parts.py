@@ -1,4 +1,4 @@
-"""What scenes for Blender are made of: things, lights, a camera, motion, materials and skies."""
+"""Parts of the scenes for Blender: objects, lights, a camera, motion, materials and skies."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Object = Any
 
 
 def placed(name: str, material: Any, index: int, smooth: bool = True) -> Object:
-    """The object that was added last, with a name, a material and an object index."""
+    """Give the object that was added last a name, a material and an object index, and return it."""
     thing = bpy.context.object
     thing.name, thing.pass_index = name, index
     thing.data.materials.append(material)
@@ -71,7 +71,7 @@ def point_light(at: Vector, radius: float, watts: float) -> Object:
 
 
 def camera(start: Vector, end: Vector, target_start: Vector, target_end: Vector, millimetres: float = 35) -> Object:
-    """A camera that goes from `start` to `end` and looks at the target, at an even speed over the shot."""
+    """A camera that moves from `start` to `end` at an even speed, while its target moves, too."""
     bpy.ops.object.camera_add(location=start)
     eye = bpy.context.object
     eye.name, eye.data.lens = "Cam", millimetres
@@ -82,13 +82,13 @@ def camera(start: Vector, end: Vector, target_start: Vector, target_end: Vector,
 
 
 def direction(at: Vector, toward: Vector) -> Vector:
-    """Euler angles of a camera or light at `at` that looks at `toward`, upright."""
+    """Euler angles of a camera or light at `at` that faces `toward`, upright."""
     x, y, z = (b - a for a, b in zip(at, toward, strict=True))
     return (math.pi / 2 + math.atan2(z, math.hypot(x, y)), 0.0, math.atan2(y, x) - math.pi / 2)
 
 
 def move(thing: Object, start: Vector, end: Vector, turn_start: Vector, turn_end: Vector) -> None:
-    """Straight motion at an even speed, that has begun before the first frame and goes on after the last."""
+    """Move an object straight at an even speed, beginning before the first frame and ending after the last."""
     for frame, at, turn in ((FIRST, start, turn_start), (LAST, end, turn_end)):
         thing.location, thing.rotation_euler = at, turn
         thing.keyframe_insert("location", frame=frame)
@@ -108,7 +108,7 @@ def curves(thing: Object) -> Any:
 
 
 def slide(thing: Object, end: Vector, turn: Vector = (0, 0, 0)) -> None:
-    """Moves a thing from where it is to `end`, and turns it by `turn` meanwhile."""
+    """Move an object from its place to `end`, and turn it by `turn` at the same time."""
     start, turned = tuple(thing.location), tuple(thing.rotation_euler)
     move(thing, start, end, turned, [a + b for a, b in zip(turned, turn, strict=True)])
 
@@ -117,7 +117,7 @@ def slide(thing: Object, end: Vector, turn: Vector = (0, 0, 0)) -> None:
 
 
 def surface(name: str, color: Vector, roughness: float = 0.8, **inputs: Any) -> Any:
-    """A Principled material; `inputs` are its other sockets, with `_` for a space."""
+    """A Principled material; `inputs` are its other sockets, with `_` instead of a space."""
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     principled = material.node_tree.nodes.get("Principled BSDF") or principled_of(material)
@@ -129,7 +129,7 @@ def surface(name: str, color: Vector, roughness: float = 0.8, **inputs: Any) -> 
 
 
 def principled_of(material: Any) -> Any:
-    """A new Principled node as the surface of a material without nodes."""
+    """Make a new Principled node the surface of a material without nodes."""
     nodes = material.node_tree.nodes
     principled, output = nodes.new("ShaderNodeBsdfPrincipled"), nodes.new("ShaderNodeOutputMaterial")
     material.node_tree.links.new(principled.outputs[0], output.inputs["Surface"])
@@ -149,7 +149,7 @@ def glowing(name: str, color: Vector, strength: float) -> Any:
 
 
 def textured(material: Any, kind: str, socket: str, output: str | None = None, **values: Any) -> Any:
-    """Links a texture of the objects' own coordinates to a socket of a Principled material."""
+    """Link a texture in the objects' own coordinates to a socket of a Principled material."""
     nodes, links = material.node_tree.nodes, material.node_tree.links
     coordinates, texture = nodes.new("ShaderNodeTexCoord"), nodes.new(f"ShaderNodeTex{kind}")
     for name, value in values.items():
@@ -165,7 +165,7 @@ def checker(name: str, scale: float, dark: Vector = (0.05, 0.05, 0.06), light: V
 
 
 def bumped(material: Any, scale: float, strength: float) -> Any:
-    """Adds a noise texture as a bump map."""
+    """Add a noise texture as a bump map."""
     nodes, links = material.node_tree.nodes, material.node_tree.links
     noise, bump = nodes.new("ShaderNodeTexNoise"), nodes.new("ShaderNodeBump")
     noise.inputs["Scale"].default_value, bump.inputs["Strength"].default_value = scale, strength

@@ -1,4 +1,7 @@
-"""The scenes of the Blender cases, one a function, made of primitives; each builds into the open, empty file."""
+"""The scenes of the Blender cases, one function each.
+
+Each builds a scene of primitives in the empty file that is open.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +49,7 @@ def metal_glass() -> None:
 
 
 def dof() -> None:
-    """A wide open lens, focused on the middle row; small lamps behind become discs."""
+    """A wide open lens, focused on the middle row; small lamps in the background become discs."""
     plane("Floor", (0, 0, 0), 40, checker("Tiles", 1.0), 1)
     colors = ((0.7, 0.1, 0.1), (0.1, 0.5, 0.15), (0.1, 0.2, 0.7), (0.7, 0.55, 0.1), (0.5, 0.5, 0.5))
     for index, color in enumerate(colors, start=2):
@@ -78,7 +81,7 @@ def motion_blur() -> None:
 
 
 def alpha() -> None:
-    """No sky in the picture: threads thinner than a pixel, a leaf cut out by its texture, a pane of half alpha."""
+    """No sky in the picture: threads thinner than a pixel, a leaf cut out by its texture, a pane with alpha 0.5."""
     bpy.context.scene.render.film_transparent = True
     thread = surface("Thread", (0.35, 0.2, 0.1), 0.5)
     for index in range(14):
@@ -110,8 +113,8 @@ def leaf_material() -> Any:
 
 
 def volume() -> None:
-    """Even fog in a room-sized box, a lamp inside it, things that shade the fog."""
-    bpy.context.scene.cycles.volume_bounces = 2  # without, Volume Indirect stays empty
+    """Uniform fog in a box as large as a room, a lamp inside it, and objects that shade the fog."""
+    bpy.context.scene.cycles.volume_bounces = 2  # at 0, Volume Indirect would be empty
     plane("Floor", (0, 0, 0), 20, surface("Grey", (0.5, 0.5, 0.5)), 1)
     box("Fog", (0, 0, 1.5), (7, 7, 3.2), fog(0.25), 2)
     for index in range(5):
@@ -137,7 +140,7 @@ def fog(density: float) -> Any:
 
 
 def bright() -> None:
-    """The sun's disc in the picture, lamps from 10 to 100000, caustics; no light is clamped or blurred."""
+    """The sun's disc in the picture, lamps from 10 to 100000, caustics; light is neither clamped nor blurred."""
     cycles = bpy.context.scene.cycles
     cycles.sample_clamp_indirect = cycles.blur_glossy = 0.0
     plane("Floor", (0, 0, 0), 30, surface("Floor", (0.6, 0.6, 0.6), 0.6), 1)
@@ -153,7 +156,7 @@ def bright() -> None:
 
 
 def texture() -> None:
-    """Textures near and below the size of a pixel, and bumps; two view layers, the second without the balls."""
+    """Textures near and below the size of a pixel, and bumps; two view layers, the second one without the balls."""
     plane("Floor", (0, 0, 0), 30, checker("Fine tiles", 9.0), 1)
     noise = textured(surface("Marble", (0.5, 0.5, 0.5), 0.4), "Noise", "Base Color", Scale=25.0, Detail=8.0)
     plane("Wall", (0, 3.5, 2), 9, noise, 2, turn=(math.pi / 2, 0, 0))
@@ -170,7 +173,7 @@ def texture() -> None:
 
 
 def second_view_layer(name: str, without: Sequence[Object]) -> None:
-    """Adds a view layer that leaves some things out; the first keeps everything."""
+    """Add a view layer without some objects; the first view layer keeps all objects."""
     scene = bpy.context.scene
     hidden = bpy.data.collections.new("Hidden in the second")
     scene.collection.children.link(hidden)
@@ -182,7 +185,7 @@ def second_view_layer(name: str, without: Sequence[Object]) -> None:
 
 
 def world() -> None:
-    """Most of the picture is a cloudy sky over hills of balls; the camera looks around."""
+    """Most of the picture is a cloudy sky over hills of balls; the camera turns."""
     tree, background, day = daylight(0.12, math.radians(25), math.radians(100), sun_disc=False)
     clouds(tree, day, background)
     plane("Ground", (0, 0, 0), 200, surface("Ground", (0.25, 0.22, 0.15)), 1)
@@ -196,7 +199,7 @@ def world() -> None:
 
 
 def clouds(tree: Any, day: Any, background: Any) -> None:
-    """Mixes white clouds of a noise texture into a sky."""
+    """Mix white clouds of a noise texture into a sky."""
     noise, ramp, mix = (tree.nodes.new(f"ShaderNode{kind}") for kind in ("TexNoise", "ValToRGB", "MixRGB"))
     noise.inputs["Scale"].default_value, noise.inputs["Detail"].default_value = 3.5, 8.0
     ramp.color_ramp.elements[0].position, ramp.color_ramp.elements[1].position = 0.5, 0.65

@@ -1,9 +1,9 @@
-"""Renders short shots with Mitsuba 3, as a user of the renderer has them.
+"""Renders short shots with Mitsuba 3, with the settings of a typical user.
 
     python scripts/renderers/mitsuba_cases.py CASE OUT
 
-Each case is a folder OUT/CASE: `noisy` at few samples with AOVs, `reference` at many, and cameras.json with the camera
-of each frame and of the one before the first. It needs `pip install mitsuba`, 3.5 or newer.
+Each case is a folder OUT/CASE: `noisy` with few samples and AOVs, `reference` with many samples, and cameras.json with
+the camera of each frame and of the frame before the first. It needs `pip install mitsuba`, 3.5 or newer.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Vector = Sequence[float]
 
 @dataclass(frozen=True)
 class Case:
-    """One shot: its things and camera at a frame, the AOVs and the samples a pixel."""
+    """One shot: its objects and camera in a frame, the AOVs and the samples per pixel."""
 
     things: Callable[[float], Scene]
     camera: Callable[[float], Any]
@@ -41,7 +41,7 @@ class Case:
 
 
 def render(case: Case, out: Path) -> None:
-    """The noisy frames, the reference and the cameras of one case."""
+    """Render the noisy frames and the reference of a case, and write its cameras."""
     for name in ("noisy", "reference"):
         (out / name).mkdir(parents=True, exist_ok=True)
     for frame in FRAMES:
@@ -53,7 +53,7 @@ def render(case: Case, out: Path) -> None:
 
 
 def write(case: Case, frame: int, integrator: Scene, samples: int, path: Path) -> None:
-    """One frame; the seed differs from frame to frame, and from noisy to reference."""
+    """Render and write one frame; the seed differs between frames, and between noisy frames and references."""
     scene = mi.load_dict(
         {"type": "scene", "integrator": integrator, "sensor": sensor(case.camera(frame)), **case.things(frame)}
     )
@@ -67,7 +67,7 @@ def sensor(to_world: Any) -> Scene:
 
 
 def cameras(case: Case) -> Scene:
-    """Each frame's camera, from the one before the first."""
+    """The camera of each frame, and of the frame before the first."""
     frames = [
         {"frame": frame, "to_world": case.camera(frame).matrix.numpy().tolist(), "fov": FOV, "fov_axis": "smaller"}
         for frame in range(-1, len(FRAMES))
@@ -75,7 +75,7 @@ def cameras(case: Case) -> Scene:
     return {"width": WIDTH, "height": HEIGHT, "renderer": f"Mitsuba {mi.__version__}", "cameras": frames}
 
 
-# Things in a scene
+# Objects of a scene
 
 
 def matte(*color: float) -> Scene:
@@ -95,14 +95,14 @@ def ball(at: Vector, radius: float, bsdf: Scene) -> Scene:
 
 
 def cube(at: Vector, size: Vector, turn: float, bsdf: Scene) -> Scene:
-    """A box that is `size` long along its axes, turned about the vertical by `turn` degrees."""
+    """A box whose edges have the lengths `size`, turned about the vertical by `turn` degrees."""
     half = [length / 2 for length in size]
     to_world = transform().translate(list(at)).rotate([0, 1, 0], turn).scale(half)
     return {"type": "cube", "to_world": to_world, "bsdf": bsdf}
 
 
 def wall(at: Vector, toward: Vector, size: Vector, bsdf: Scene) -> Scene:
-    """A rectangle at `at` whose front looks at `toward`."""
+    """A rectangle at `at` whose front faces `toward`."""
     up = [0, 0, 1] if at[0] == toward[0] and at[2] == toward[2] else [0, 1, 0]
     to_world = transform().look_at(list(at), list(toward), up).scale([size[0] / 2, size[1] / 2, 1])
     return {"type": "rectangle", "to_world": to_world, "bsdf": bsdf}
@@ -116,7 +116,7 @@ def camera(at: Vector, target: Vector) -> Any:
     return transform().look_at(list(at), list(target), [0, 1, 0])
 
 
-# One scene a function, and its camera
+# The scenes, one function each, and their cameras
 
 
 def closed_box(frame: float) -> Scene:
@@ -139,7 +139,7 @@ def closed_box_camera(frame: float) -> Any:
 
 
 def materials(frame: float) -> Scene:
-    """Rough metals, glass and area lights under an even sky; the gold ball moves."""
+    """Rough metals, glass and area lights under a uniform sky; the gold ball moves."""
     tiles = {"type": "checkerboard", "color0": rgb(0.1, 0.1, 0.12), "color1": rgb(0.7, 0.7, 0.65)}
     tiles["to_uv"] = transform().scale([16, 16, 1])
     return {

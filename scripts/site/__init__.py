@@ -1,1 +1,1 @@
-"""The documentation site: pages of the repository and pages made from the code, put together by Sphinx."""
+"""Builds the documentation site with Sphinx, from pages of the repository and pages made from the code."""

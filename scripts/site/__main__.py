@@ -1,7 +1,7 @@
 """Builds the documentation site: `make site`. Any warning of Sphinx fails it.
 
-The pages are copied to a folder of their own first, with links that fit the site, and those that are made from the
-code are put beside them.
+The pages are copied to a folder with links that fit the site. The pages that are made from the code are written there,
+too.
 """
 
 from __future__ import annotations

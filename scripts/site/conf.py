@@ -1,4 +1,4 @@
-"""What Sphinx is told; `python -m scripts.site` calls it."""
+"""The configuration of Sphinx, which `python -m scripts.site` runs."""
 
 from datetime import date
 
@@ -15,12 +15,12 @@ html_theme = "furo"
 html_title = f"svgf_cl {__version__}"
 html_copy_source = False
 
-# Pages are written for the forge: anchors of headings and code without a language are as it has them.
+# Pages are written for the forge, so anchors of headings and code without a language follow its rules.
 myst_heading_anchors = 4
 highlight_language = "text"
-smartquotes = False  # they would make one dash of the two of an option
+smartquotes = False  # they would turn the two dashes of an option into one
 
-# Docstrings are numpydoc: a name in backquotes is code.
+# Docstrings are numpydoc, where a name in backquotes is code.
 default_role = "code"
 napoleon_google_docstring = False
 autodoc_typehints_format = "short"

@@ -1,4 +1,4 @@
-"""Which pages the site has, in which order, and where in the repository each lies."""
+"""The pages of the site, their order, and their places in the repository."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 
-# Pages outside docs/, by their path in the repository, and what they are on the site. Those in docs/ keep their paths.
+# Pages outside docs/, by their path in the repository, and their path on the site. Pages in docs/ keep their paths.
 OUTSIDE = {
     "README.md": "index.md",
     "CHANGELOG.md": "changelog.md",
@@ -17,7 +17,7 @@ OUTSIDE = {
     "tracer/README.md": "tracer.md",
 }
 
-# The navigation: pages by title of their section. A page that is in none fails the build, and so does one that is gone.
+# The navigation: pages by the title of their section. The build fails if a page is missing here, or no longer exists.
 SECTIONS = {
     "Start": ("installation.md",),
     "Use from Python": ("api.rst", "settings.md", "examples.md"),
@@ -44,7 +44,7 @@ SECTIONS = {
 
 
 def page_of(path: str) -> str | None:
-    """The page of the site that a file of the repository is, relative to the site's root; None where it is none."""
+    """The page of the site for a file of the repository, relative to the site's root; None if there is none."""
     if path in OUTSIDE:
         return OUTSIDE[path]
     folder, _, rest = path.partition("/")
@@ -52,14 +52,14 @@ def page_of(path: str) -> str | None:
 
 
 def sources() -> dict[str, Path]:
-    """The pages of the site that are files of the repository, by their path on the site."""
+    """The pages of the site that are files of the repository, by their paths on the site."""
     files = [ROOT / name for name in OUTSIDE] + sorted((ROOT / "docs").rglob("*.md"))
     pages = {page_of(file.relative_to(ROOT).as_posix()): file for file in files}
     return {page: file for page, file in pages.items() if page is not None}
 
 
 def navigation() -> str:
-    """The table of contents, as the start page ends with it."""
+    """The table of contents at the end of the start page."""
     blocks = []
     for title, pages in SECTIONS.items():
         names = "\n".join(page.rpartition(".")[0] for page in pages)

@@ -1,4 +1,4 @@
-"""Links of a page for the site: to the page there, else to the file in the repository."""
+"""Converts links in pages: to the page on the site if there is one, otherwise to the file in the repository."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ def for_site(text: str, path: str) -> str:
     text : str
         The page as it is in the repository.
     path : str
-        Where it lies there, such as ``docs/renderers/blender.md``.
+        Its path there, such as ``docs/renderers/blender.md``.
     """
-    parts = CODE.split(text)  # text and code by turns
+    parts = CODE.split(text)  # text and code alternate
     parts[::2] = [TARGET.sub(lambda found: _target(found[1], path), part) for part in parts[::2]]
     return "".join(parts)
 
 
 def _target(target: str, path: str) -> str:
-    """Where a link of the page at `path` leads on the site."""
+    """The target on the site of a link in the page at `path`."""
     if "://" in target:
         return target
     file = os.path.normpath(PurePosixPath(path).parent / target)
@@ -49,7 +49,7 @@ def _target(target: str, path: str) -> str:
 
 
 def _relative(page: str, path: str) -> str:
-    """A page or picture of the site as seen from what the page at `path` is there."""
+    """The path to a page or picture of the site, relative to the page on the site for `path`."""
     here = page_of(path)
     assert here is not None, path
     return os.path.relpath(page, PurePosixPath(here).parent)

@@ -1,4 +1,4 @@
-"""The pages of the site that are made from the code: the Python API, the settings, the command line."""
+"""The pages of the site that are made from the code: Python API, settings, command line."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from svgf_cl.filters import DEFAULT, FILTERS
 from svgf_cl.filters.filter import Filter
 from svgf_cl.settings import DOMAIN, REASON, UNIT
 
-Command = Any  # click's, or that of the copy of click that newer versions of typer have
+Command = Any  # a command of click, or of the copy of click inside newer versions of typer
 
-# Every name that `import svgf_cl` offers, by what it is for.
+# All names that `import svgf_cl` offers, by their purpose.
 TOPICS = {
     "Denoising": ("Denoiser", "TiledDenoiser", "denoiser_for", "look_ahead"),
     "Frames": ("Frame", "Inputs", "open_sequence"),
@@ -39,7 +39,7 @@ TOPICS = {
 
 
 def api() -> str:
-    """The page of what `import svgf_cl` offers, from the docstrings; reStructuredText."""
+    """The page about the names of `import svgf_cl`, from their docstrings; reStructuredText."""
     topics = (f"{underlined(topic, '-')}\n{''.join(map(documented, names))}" for topic, names in TOPICS.items())
     return f"{underlined('Python API', '=')}\nWhat ``import svgf_cl`` offers.\n\n{''.join(topics)}"
 
@@ -50,7 +50,7 @@ def underlined(title: str, mark: str) -> str:
 
 
 def documented(name: str) -> str:
-    """The directive that shows the docstring of a name, and those of a class's methods where users call these."""
+    """The directive for the docstring of a name, and for those of a class's methods if users call them."""
     thing = getattr(svgf_cl, name)
     kind = "class" if inspect.isclass(thing) else "function"
     has_methods = kind == "class" and not issubclass(thing, (Filter, Exception))
@@ -58,7 +58,7 @@ def documented(name: str) -> str:
 
 
 def settings() -> str:
-    """The page of every filter's settings, from their declarations; Markdown."""
+    """The page about all filters' settings, from their declarations; Markdown."""
     introduction = (
         "# Settings\n\n"
         "Every filter is a class of settings, such as `Kalman(iterations=3)`, for `Denoiser(..., settings=...)`; "
@@ -70,7 +70,7 @@ def settings() -> str:
 
 
 def settings_of(kind: type[Filter]) -> str:
-    """One filter's settings: default, values and unit of each, then its meaning and the reason for the default."""
+    """The settings of one filter: default, values and unit of each, its meaning, and the reason for the default."""
     summary = (kind.__doc__ or "").partition("\n")[0]
     items = []
     for each in fields(kind):
@@ -80,7 +80,7 @@ def settings_of(kind: type[Filter]) -> str:
 
 
 def command_line() -> str:
-    """The page of ``svgf-cl``'s commands, from their declarations; Markdown."""
+    """The page about the commands of ``svgf-cl``, from their declarations; Markdown."""
     group = typer.main.get_group(application())
     top = typer.Context(group, info_name="svgf-cl")
     introduction = f"# Command line\n\n{group.help}\n\n{group.epilog}\n"
@@ -88,7 +88,7 @@ def command_line() -> str:
 
 
 def command(each: Command, top: typer.Context) -> str:
-    """One command: how it is called, what it does, and a row for each argument and option."""
+    """One command: its usage, its purpose, and a row for each argument and option."""
     context = typer.Context(each, info_name=each.name, parent=top)
     usage = " ".join(each.get_usage(context).removeprefix("Usage: ").split())
     rows = [f"| `{names}` | {cell(meaning)} |" for names, meaning in options(each, context)]
@@ -104,12 +104,12 @@ def options(each: Command, context: typer.Context) -> Iterator[tuple[str, str]]:
 
 
 def cell(text: str) -> str:
-    """`text` within a table."""
+    """`text` for a cell of a table."""
     return " ".join(text.split()).replace("|", "\\|").replace("<", "\\<").replace("*", "\\*")
 
 
 def prose(text: str) -> str:
-    """Help as Markdown: what it keeps line by line, behind a backspace, is code."""
+    """Convert a help text to Markdown: paragraphs after a backspace, which are kept line by line, become code."""
     paragraphs = re.split(r"\n\s*\n", inspect.cleandoc(text))
     return "\n\n".join(
         f"```text\n{paragraph.removeprefix(chr(8)).strip(chr(10))}\n```" if paragraph.startswith("\b") else paragraph
