@@ -1,9 +1,9 @@
-// One level of the edge-avoiding a-trous wavelet filter; the 5x5 or 3x3 taps of level i = 1, 2, ... lie 2^(i - 1)
-// pixels apart, which is its step.
+// One level of the edge-avoiding a-trous wavelet filter. Level i = 1, 2, ... has 5x5 or 3x3 taps that are 2^(i - 1)
+// pixels apart; this distance is its step.
 //
 //   c = sum h w c / sum h w,   w = w_z w_n w_a w_l (SVGF)  or  w_z w_n w_a w_c (EAW)
 //   w_z = exp(-|z - z'| / (step (sigma_depth |grad z . d| + slope_floor z |d|)))     w_n = exp(sigma_normal (n.n' - 1))
-//   w_a = 1 where no channel's albedos are further apart than albedo_threshold octaves, else 0
+//   w_a = 1 if the albedos differ by at most albedo_threshold octaves in every channel, else 0
 //
 //   GUIDED_BY_VARIANCE 1, SVGF and Kalman:  Var = sum h^2 w^2 Var / (sum h w)^2
 //     w_l = exp(-|l - l'| / (sigma_luminance sqrt(gauss3x3(Var)) + 1e-3 l + 1e-12)), in Kalman l = (l + guidance) / 2
@@ -12,11 +12,11 @@
 //
 // in   guide: normal, depth, albedo;  source: colour and, but for EAW, variance;  in Kalman guidance
 // out  target: the same
-// Schied et al. 2017, section 4.3 and 4.4; Dammertz et al. 2010. All terms and h share one exponential; offsets
-// come in pairs +d and -d that share the scale of w_z.
+// Schied et al. 2017, sections 4.3 and 4.4; Dammertz et al. 2010. All terms and h share one exponential. Offsets come
+// in pairs +d and -d, which share the scale of w_z.
 
-// Coefficients of the spline from the middle, as exponents: B3 has 3/8, 1/4, 1/16, of which 3/8 = 1.5 / 4 lies on a
-// straight line of the fast weight; the linear one has 1/2, 1/4.
+// Coefficients of the spline from the middle, as exponents. B3 has 3/8, 1/4, 1/16, where 3/8 = 1.5 / 4 is on a straight
+// line of the fast weight. The linear spline has 1/2, 1/4.
 #if RADIUS == 2
 #define MIDDLE 0.375f
 INLINE float log2_spline(int d) { return d == 0 ? (FAST ? -1.5f : -1.41503750f) : d == 1 ? -2.0f : -4.0f; }
@@ -25,11 +25,11 @@ INLINE float log2_spline(int d) { return d == 0 ? (FAST ? -1.5f : -1.41503750f) 
 INLINE float log2_spline(int d) { return d == 0 ? -1.0f : -2.0f; }
 #endif
 
-// What a level reads.
+// The inputs of a level.
 typedef struct {
     int4 size;
     int step;
-    float sigma;  // of light
+    float sigma;  // of the tolerance of light
     __global const float *guide;
     __global const light_t *source;
 #if GUIDED_BY_PAST
@@ -37,8 +37,8 @@ typedef struct {
 #endif
 } Level;
 
-// How light is told apart: `light_at` is what there is of a signal's at a pixel, and `light_exponent` adds to the
-// exponent `e` of a tap that of w_l or w_c for its light, red, luminance and blue.
+// How light is compared: `light_at` computes the terms of a signal at a pixel, and `light_exponent` adds the exponent
+// of w_l or w_c to the exponent `e` of a tap, for the tap's light as red, luminance and blue.
 #if GUIDED_BY_VARIANCE
 #define SIGMA_LIGHT sigma_luminance
 
@@ -46,7 +46,7 @@ typedef struct {
     floatv luminance, scale;
 } Light;
 
-// What light is told apart by, at pixel `i`.
+// The terms by which light is compared, at pixel `i`.
 INLINE floatv compared(Level level, int s, floatv luminance, int i) {
 #if GUIDED_BY_PAST
     return 0.5f * (luminance + load(PLANE(level.size, level.guidance, GUIDANCE_LUMINANCE, s, 0) + i));
@@ -72,7 +72,7 @@ INLINE floatv light_exponent(floatv e, Light light, const floatv *color, Level l
 }
 #else
 #define SIGMA_LIGHT sigma_color
-// A variance without channels: what is done for each of them is not done.
+// A variance without channels: loops over its channels do nothing.
 #define ILLUMINATION_VARIANCE 0
 #define ILLUMINATION_VARIANCE_CHANNELS 0
 
@@ -103,12 +103,12 @@ typedef struct {
     Light light[SIGNALS];
 } Centre;
 
-// Of one signal over the taps.
+// Sums of one signal over the taps.
 typedef struct {
     floatv color[3], variance, weight;
 } Sum;
 
-// `log2_h`: of the tap's spline coefficient.
+// `log2_h`: exponent of the tap's spline coefficient.
 INLINE void add_light(Sum *sums, Level level, Centre centre, floatv scale, float log2_h, int tap) {
     const floatv e = surface_exponent(centre.surface, scale, log2_h, level.size, tap, level.guide);
     UNROLLED_FOR(s, SIGNALS) {
@@ -124,9 +124,9 @@ INLINE void add_light(Sum *sums, Level level, Centre centre, floatv scale, float
     }
 }
 
-// Row of the image for this work-item: y, y + step, y + 2 step, ... in turn. What comes next then reads four of the
-// five tap rows again, while they are in the cache: a third less time for the wider levels. Dolp et al. 2024 permute
-// pixels so.
+// Row of the image for this work-item: y, y + step, y + 2 step, ... in turn. The next work-items then read four of the
+// five tap rows again, while these are in the cache: the wider levels take a third less time. Dolp et al. 2024 permute
+// pixels in the same way.
 INLINE int interleaved_row(int height, int step) {
     const int rows = (height + step - 1) / step, first = row() / rows;
     return row() < rows * step ? first + (row() - first * rows) * step : height;
@@ -166,15 +166,15 @@ KERNEL atrous(const int4 size, const int step, const float sigma_depth, const fl
         sums[s].weight = (floatv)(h);
     }
 
-    // Unrolled, all rows at once take a tenth less time on PoCL; but a sixth more where there are many taps of few
-    // operations. On GPUs a loop keeps up to twice as many registers: all addresses of its taps.
+    // All rows unrolled together take a tenth less time on PoCL, but a sixth more with many taps of few operations. On
+    // GPUs a loop needs up to twice as many registers, for the addresses of all its taps.
 #if VW == 1 || !(FAST && RADIUS == 2)
 #pragma unroll
 #endif
     for (int dy = 0; dy <= RADIUS; ++dy) {
 #pragma unroll
         for (int dx = -RADIUS; dx <= RADIUS; ++dx) {
-            if (dy == 0 && dx <= 0) continue;  // the other half of each pair, and the centre
+            if (dy == 0 && dx <= 0) continue;  // skip the other half of each pair, and the centre
             const floatv scale = depth_scale(centre.surface.facet, dx, dy);
             const float log2_h = log2_spline(dx < 0 ? -dx : dx) + log2_spline(dy);
             const int offset = step * (dy * size.z + dx);

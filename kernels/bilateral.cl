@@ -1,4 +1,4 @@
-// Cross-bilateral filter: a mean of light over a square window, by how near a tap is and how alike its surface.
+// Cross-bilateral filter: a mean of light over a square window, weighted by distance and by similarity of surfaces.
 //
 //   SBF, LEARNED 0:  w = w_a exp(-D_z / (2 gamma_depth^2) - D_n / (2 gamma_normal^2)),  and for scales i = 1, 2, ...
 //     c_i = sum g_i w c / sum g_i w,  g_i = exp(-|d|^2 / (2 sigma^2)) within 2 sigma,  sigma = 2^(i - 1)
@@ -9,11 +9,11 @@
 //
 // in   guide;  source: colour, variance;  SBF: moments: N;  LBF: parameters: p
 // out  SBF: candidate_1, ...: colour and risk of each scale;  LBF: target: colour
-// Li et al. 2012, equation 3 and section 3.2: risk is Stein's unbiased estimate of the squared error of luminance,
-// without the term -v, which all scales have in common; the middle tap, whose w is 1, has the share 1 / sum g_i w. v is
-// the variance of the accumulated mean. LBF: Kalantari et al. 2015. D_z and D_n are those of features.clh.
+// Li et al. 2012, equation 3 and section 3.2. The risk is Stein's unbiased estimate of the squared error of luminance,
+// without the term -v that all scales share. The middle tap has w = 1, so its share is 1 / sum g_i w. v is the variance
+// of the accumulated mean. LBF: Kalantari et al. 2015. D_z and D_n are those of features.clh.
 
-// Of one signal at one scale.
+// Sums of one signal at one scale.
 typedef struct {
     floatv color[3], weight;
 } Sum;
@@ -23,7 +23,7 @@ INLINE void add_tap(Sum *sum, floatv w, const floatv *color) {
     sum->weight += w;
 }
 
-// 2^e, and exactly nothing where it has levelled off or the tap shows something else.
+// 2^e, and exactly 0 where it has levelled off or the tap is a miss.
 INLINE floatv tap_weight(Distance d, floatv e) {
     const floatv w = weight(e);
     return where(d.alike & (w > FAINTEST), w, (floatv)(0.0f));
@@ -73,7 +73,7 @@ KERNEL bilateral(const int4 size, const float albedo_threshold, const float dept
 }
 #else
 #define SCALES 4
-#define MOST_OF_A_FRAME 0.9f            // without accumulation nothing is known of a variance over time
+#define MOST_OF_A_FRAME 0.9f            // without accumulation, nothing is known of the variance over time
 #define REACH_OF(scale) (2 << (scale))  // twice the standard deviation, in pixels
 
 // Colour and risk of a scale.
@@ -86,7 +86,7 @@ INLINE void put_candidate(Sum sum, const int4 size, int s, int here, floatv own,
     store(off * off + 2.0f * noise * share, PLANE(size, candidate, CANDIDATE_RISK, s, 0) + here);
 }
 
-// `gaussian`: of each scale the weights along an axis, from the middle to WINDOW pixels away.
+// `gaussian`: the weights of each scale along an axis, for distances of 0 to WINDOW pixels.
 KERNEL bilateral(const int4 size, const float gamma_depth, const float gamma_normal, const float albedo_threshold,
                  const float depth_slope_floor, const float alpha_color, __global const float *restrict gaussian,
                  __global const float *restrict guide, __global const light_t *restrict source,

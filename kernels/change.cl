@@ -1,8 +1,8 @@
-// Has the light changed? A test of the new frame against the prediction, over neighbourhoods of growing size, at every
+// Has the light changed? This tests the new frame against the prediction, over neighbourhoods of growing size, at every
 // second pixel of every second row.
 //
-//   pass 1 has the 2x2 pixels to the right and below, pass i = 2, 3, 4 has 3x3 taps 2^(i-1) pixels apart;
-//   with weights w = h w_z w_n of geometry alone
+//   pass 1 averages the 2x2 pixels to the right and below; pass i = 2, 3, 4 averages 3x3 taps 2^(i-1) pixels apart; the
+//   weights w = h w_z w_n depend on geometry alone
 //     d, r, e, f := mean of d, r, e, f,   u := sum w^2 u / (sum w)^2
 //     from d = D, r = l(D)^2, e = E, f = E^2, u = 1 at all pixels
 //   from the widest pass down to i = 2, beginning with A = B = q = 0:
@@ -11,20 +11,20 @@
 //
 // in   innovation: D, E;  prediction: S;  guide: depth, normal
 // out  change: d, r, e, f, u;  correction: A, B, q, and R = r - l(d)^2 of pass 2
-// u is how much smaller the variance of a mean is than that of a sample. The recursion does not know that taps of later
-// passes are correlated: C makes up for it.
+// u is the variance of a mean divided by that of a sample. The recursion ignores that taps of later passes are
+// correlated; C corrects for this.
 
-// What C is for passes 2, 3 and 4, measured on white noise on a plane.
+// C for passes 2, 3 and 4, measured with white noise on a plane.
 #define CORRELATED_2 1.0f
 #define CORRELATED_3 1.49f
 #define CORRELATED_4 2.54f
 
-// Of one signal.
+// Means of one signal.
 typedef struct {
     floatv color[3], square, residual, residual_square;
 } Mean;
 
-// Over the taps, those of all signals with the same weight.
+// Sums over the taps; all signals share the weights.
 typedef struct {
     floatv weight, share;
     Mean of[SIGNALS];
@@ -40,7 +40,7 @@ INLINE Means no_means(void) {
     return m;
 }
 
-// Sums to means.
+// Converts sums to means.
 INLINE Means divided(Means m) {
     const floatv scale = where(m.weight > 0.0f, 1.0f / m.weight, (floatv)(0.0f));
     m.share *= scale * scale;
@@ -53,7 +53,7 @@ INLINE Means divided(Means m) {
     return m;
 }
 
-// Every second pixel, and those to the right of them.
+// Every second pixel, and the pixels to the right of these.
 typedef struct {
     floatv side[2];
 } Pairs;
@@ -96,7 +96,7 @@ INLINE Means load_means(const int4 size, int here, __global const float *change)
     return m;
 }
 
-// The first pass: from all pixels to every second one, whose surface it keeps for the others.
+// The first pass: from all pixels to every second one; it also stores the surfaces of these for the later passes.
 KERNEL innovation_mean(const int4 size, const int4 coarse_size, const float sigma_depth, const float sigma_normal,
                        const float depth_slope_floor, __global const float *restrict guide,
                        __global const float *restrict innovation, __global float *restrict facets,
@@ -180,7 +180,7 @@ INLINE void add_means(Means *sum, floatv w, const int4 size, int tap, __global c
     }
 }
 
-// One of the later passes: mean over taps `step` of these pixels apart.
+// One of the later passes: a mean over taps that are `step` coarse pixels apart.
 INLINE Means mean_over(const int4 size, int here, int step, float sigma_depth, float sigma_normal, float slope_floor,
                        __global const float *facets, __global const float *finer) {
     __global const float *depth = SHARED_PLANE(size, facets, FACETS_DEPTH);
@@ -196,9 +196,9 @@ INLINE Means mean_over(const int4 size, int here, int step, float sigma_depth, f
     for (int dy = 0; dy <= 1; ++dy) {
 #pragma unroll
         for (int dx = -1; dx <= 1; ++dx) {
-            if (dy == 0 && dx <= 0) continue;  // the other half of each pair, and the centre, whose weight is 1
+            if (dy == 0 && dx <= 0) continue;  // skip the other half of each pair, and the centre, whose weight is 1
             const floatv scale = depth_scale(facet, dx, dy);
-            const float log2_h = dx && dy ? -2.0f : -1.0f;  // of the spline (1/2, 1, 1/2) in both directions
+            const float log2_h = dx && dy ? -2.0f : -1.0f;  // of the spline (1/2, 1, 1/2) along both axes
             const int offset = step * (dy * size.z + dx);
             UNROLLED_FOR(side, 2) {
                 const int tap = moved(here, side ? -offset : offset);
@@ -224,12 +224,12 @@ KERNEL coarser_mean(const int4 size, const int4 coarse_size, const int step, con
     store_means(m, coarse_size, here, change);
 }
 
-// Of one signal: A, B and q.
+// The correction of one signal: A, B and q.
 typedef struct {
     floatv color[3], residual, doubt;
 } Correction;
 
-// Takes up what is left of the change at a finer scale.
+// Adds the part of the change that is found at a finer scale.
 INLINE void add_change(Correction *c, Mean m, floatv share, floatv least, float threshold) {
     const floatv off = m.residual - c->residual;
     const floatv variance = max(m.residual_square - m.residual * m.residual, least);

@@ -1,12 +1,12 @@
-// The standard error of the result: how far each pixel's luminance may lie off the truth, as a standard deviation.
+// The standard error of the result's luminance at each pixel.
 //
 //   3 sqrt(sum over signals Var) * l(albedo')
 //
-// in   albedo where the frame has it; illumination: the variance that the last level leaves
+// in   albedo if the frame has it; illumination: the variance after the last level
 // out  confidence: the standard error
 
-// The levels treat their taps as independent, which they are not, and Var does not include the error that blurring
-// makes: its root is about a third of the measured error.
+// The levels treat their taps as independent, although they are not, and Var does not include the error of blurring.
+// The factor corrects for both: the root of Var is about a third of the measured error.
 #define CALIBRATION 3.0f
 
 KERNEL standard_error(const int4 size,

@@ -1,4 +1,5 @@
-// What guides the a-trous levels: by which luminance they tell light apart, and its variance where history is short.
+// The guidance of the a-trous levels: the luminance by which they compare light, and its variance where history is
+// short.
 //
 //   l~ = sum h w l(H) / sum h w over 3x3 taps,  w = w_z w_n
 //   G := l~ where nothing was known
@@ -7,10 +8,10 @@
 //
 // in   guide;  state: H, W;  expected: G, Var
 // out  illumination (the state): Var;  first, guidance: the luminance that a level adds to that of its own light
-// Level i compares (l(c_i) + G) / 2. In the first level l(c_i) is H itself, so that its smoothed form stands in for it.
+// Level i compares (l(c_i) + G) / 2. In the first level l(c_i) is H itself, so its smoothed form is used instead.
 
-#define SHORT_HISTORY 0.5f      // of W: from fewer than two samples
-#define SHARE_OF_VARIANCE 0.5f  // of that over space: some of it is detail
+#define SHORT_HISTORY 0.5f      // W above this means fewer than two samples
+#define SHARE_OF_VARIANCE 0.5f  // the rest of the variance over space is detail
 #define REACH 3                 // 7x7 taps
 
 typedef struct {
@@ -26,7 +27,8 @@ INLINE Moments neighbourhood(const int4 size, int here, Surface surface, const f
         ROLLED_FOR(dx, -REACH, REACH) {
             const int tap = moved(here, dy * size.z + dx);
             floatv w = weight(surface_exponent(surface, depth_scale(surface.facet, dx, dy), 0.0f, size, tap, guide));
-            // Even so faint, the square of light of 1e10 would show; and a miss is told by its depth alone.
+            // Even such a small weight would matter for the square of light of 1e10. A miss is marked by its depth
+            // alone.
             const intv seen = load(SHARED_PLANE(size, guide, GUIDE_DEPTH) + tap) > 0.0f;
             w = where(seen & (w > FAINTEST), w, (floatv)(0.0f));
             sum.weight += w;
@@ -60,7 +62,7 @@ KERNEL guidance(const int4 size, const float sigma_depth, const float sigma_norm
     for (int dy = 0; dy <= 1; ++dy) {
 #pragma unroll
         for (int dx = -1; dx <= 1; ++dx) {
-            if (dy == 0 && dx <= 0) continue;  // the other half of each pair, and the centre, whose weight is 1
+            if (dy == 0 && dx <= 0) continue;  // skip the other half of each pair, and the centre, whose weight is 1
             const floatv scale = depth_scale(surface.facet, dx, dy);
             const float log2_h = dx && dy ? -2.0f : -1.0f;
             UNROLLED_FOR(side, 2) {

@@ -1,19 +1,19 @@
-// First and last stage: the user's interleaved (H, W, C) arrays in and out of the planar layout.
+// First and last pass: converts the user's interleaved (H, W, C) arrays to planes and back.
 //
 //   demodulate   c = min(max((radiance - emission) / albedo', 0), MAX_LIGHT)
 //   modulate     out = sum over signals c * albedo' + emission
 //
 // in   radiance of each signal; albedo, emission, id where the frame has them; normal, depth
 // out  guide: normal, depth (both 0 on a miss), id, albedo (as a code);  illumination: c
-// A single signal holds the emission, of two neither does. With TAA `out` is a picture, else the user's array.
-// Texture never goes through the filter (Schied et al. 2017, section 3); albedo' is that of divisor.clh. Modulate
-// multiplies by the number that demodulate divided by.
+// A single signal contains the emission; of two signals, neither does. With TAA `out` is a picture, otherwise the
+// user's array. Texture does not go through the filter (Schied et al. 2017, section 3): modulate multiplies by albedo',
+// the number of divisor.clh by which demodulate divided.
 
 #define MAX_CHANNEL 1e10f  // of a radiance or a normal; the sun's disc has 2e9 cd/m2
 #define MIN_DEPTH 1e-20f
-#define MIN_NORMAL2 1e-12f  // square of a normal's length: any unit serves, and what is shorter points nowhere
+#define MIN_NORMAL2 1e-12f  // of the square of a normal's length: any unit works, and shorter normals count as none
 
-// The radiance of each signal, by what is to be done with it.
+// Applies the macro `what` to the radiance of each signal.
 #if SIGNALS == 2
 #define EACH_RADIANCE(what) what(radiance_0), what(radiance_1)
 #else
@@ -22,7 +22,7 @@
 #define DECLARED(radiance) __global const float *restrict radiance
 #define LOADED(radiance) known_color(load_color(size, x, y, radiance))
 
-// Zero where any channel is NaN, infinite or beyond all that shines: clamped it would be a firefly for hundreds of
+// Returns zero if any channel is NaN, infinite or too large. Clamping it instead would leave a firefly for hundreds of
 // frames.
 INLINE Color known_color(Color c) {
     const intv good =
@@ -39,7 +39,7 @@ INLINE Color known_emission(const int4 size, int x, int y, __global const float 
 }
 #endif
 
-// Light of signal `s`, red, green and blue, into its planes.
+// Writes light of signal `s`, as red, green and blue, into its planes.
 INLINE void put_light(Color c, const int4 size, int s, int here, intv inside, __global light_t *illumination) {
     UNROLLED_FOR(k, 3) c.channel[k] = where(inside, clamp(c.channel[k], 0.0f, MAX_LIGHT), (floatv)(0.0f));
     c.channel[LIGHT_LUMINANCE] = luminance(c.channel[0], c.channel[1], c.channel[2]);
@@ -91,7 +91,7 @@ KERNEL demodulate(const int4 size, EACH_RADIANCE(DECLARED),
     UNROLLED_FOR(s, SIGNALS) put_light(light[s], size, s, here, inside, illumination);
 }
 
-// Light of all signals together, red, green and blue.
+// Light of all signals together, as red, green and blue.
 INLINE Color get_light(const int4 size, int here, __global const light_t *illumination) {
     Color c;
     UNROLLED_FOR(k, 3) {

@@ -1,39 +1,40 @@
-// LBF's network: from statistics of a pixel's neighbourhood to the parameters of the bilateral filter there.
+// LBF's network: computes the parameters of the bilateral filter from statistics of each pixel's neighbourhood.
 //
-//   statistics of l (over its mean in 7x7), z (over z), n and albedo (octaves), of 3x3 and of 7x7 pixels that show
-//   something:  deviation, mean |f' - f|, mean f' - f (of n its length);  then the gradient's length
-//   sqrt(Var) and sqrt(gauss3x3(Var)) over the mean of l;  1 / N
+//   statistics of l (divided by its mean in 7x7), z (divided by z), n and albedo (octaves), over the hits of 3x3 and of
+//   7x7 pixels:  deviation, mean |f' - f|, mean f' - f (of n its length);  then the length of the gradient
+//   sqrt(Var) and sqrt(gauss3x3(Var)), divided by the mean of l;  1 / N
 //   x = statistic / (|statistic| + halfway), 1 / N as it is
 //   h = W_1 x + b_1;  p = 2^clamp(W_2 h / (1 + |h|) + b_2)
 //
 // in   guide;  source: colour, variance;  moments: N;  network: W_1 by columns, b_1, W_2 by columns, b_2
-// out  parameters: p, each in octaves of weight (bilateral.cl); 0 where nothing was hit
-// Kalantari et al. 2015, section 4. All statistics are free of scale and exposure.
+// out  parameters: p, each in octaves of weight (bilateral.cl); 0 at a miss
+// Kalantari et al. 2015, section 4. No statistic depends on the scene's scale or on exposure.
 
 #define NEAR 1  // 3x3 taps
 #define WIDE 3  // 7x7 taps
 
-// The features, in the order of their statistics, and how many they have each.
+// The features in the order of their statistics, and the number of statistics of each.
 enum { LIGHT = 0, DEPTH = 1, NORMAL = 2, ALBEDO = 3, FEATURES = 4 };
 #define STATISTICS 7
 #define CHANNELS_OF(feature) ((feature) == NORMAL ? 3 : 1)
 
-// Where a statistic counts 1/2: of light, depth, normal, albedo; and of noise.
+// The value of a statistic that becomes 1/2: for light, depth, normal and albedo; and for noise.
 #define HALFWAY_OF(feature) ((feature) == LIGHT ? 0.3f : (feature) == DEPTH ? 0.01f : (feature) == NORMAL ? 0.1f : 0.5f)
 #define HALFWAY_NOISE 1.0f
-#define LEAST_POWER -24.0f  // of two, that a parameter may be
+#define LEAST_POWER -24.0f  // smallest exponent of a parameter, which is a power of two
 #define GREATEST_POWER 10.0f
-#define MOST_APART 1e15f  // that two values may be: a statistic of it is 1 already, and its square is finite
-#define BLACK 1e-12f      // is added to the mean of light, which others are divided by
+// limit for a difference of two values: its statistic is 1 already, and its square is still finite
+#define MOST_APART 1e15f
+#define BLACK 1e-12f  // added to the mean of light before it is a divisor
 
-// Where a feature's values are.
+// The values of a feature.
 typedef struct {
     int4 size;
     __global const float *guide;
     __global const light_t *luminance;
 } Planes;
 
-// Of one signal: the layer before it bends.
+// The hidden layer of one signal, before softsign.
 typedef struct {
     floatv hidden[HIDDEN];
     __global const float *network;
@@ -47,7 +48,7 @@ INLINE floatv squashed(floatv value, float halfway) { return value / (fabs(value
 
 INLINE floatv depth_at(Planes planes, int i) { return load(SHARED_PLANE(planes.size, planes.guide, GUIDE_DEPTH) + i); }
 
-// Channel `k` of a feature; albedo in octaves, the mean of its channels.
+// Channel `k` of a feature; albedo is in octaves, as the mean of its channels.
 INLINE floatv feature_at(Planes planes, int feature, int k, int i) {
     if (feature == LIGHT) return load_light(planes.luminance + i);
     if (feature == DEPTH) return depth_at(planes, i);
@@ -62,8 +63,8 @@ INLINE floatv feature_at(Planes planes, int feature, int k, int i) {
 #endif
 }
 
-// By how much two values of a feature differ, where `scale` is 1 over what the feature counts against. It is scaled
-// before it is squared: the square of a depth may be no float.
+// The difference of two values of a feature; `scale` is 1 divided by the unit of the feature. It is scaled before it is
+// squared, because the square of a depth may exceed a float.
 INLINE floatv apart(floatv there, floatv here, floatv scale) {
     return clamp((there - here) * scale, -MOST_APART, MOST_APART);
 }
@@ -84,7 +85,7 @@ INLINE void see_sums(Layer *layer, int input, Sums sums, int feature) {
     see(layer, input + 2, squashed(mean, HALFWAY_OF(feature)));
 }
 
-// Square of half the difference of a feature between two taps, where both show something.
+// Square of half of a feature's difference between two taps, if both are hits.
 INLINE floatv squared_slope(Planes planes, int feature, int behind, int ahead, floatv scale) {
     floatv squares = (floatv)(0.0f);
     UNROLLED_FOR(k, CHANNELS_OF(feature)) {
@@ -96,7 +97,7 @@ INLINE floatv squared_slope(Planes planes, int feature, int behind, int ahead, f
     return where(seen, squares, (floatv)(0.0f));
 }
 
-// The statistics of a feature in the taps up to `reach` away.
+// The statistics of a feature over the taps that are at most `reach` away.
 INLINE void see_neighbourhood(Layer *layer, int input, int feature, Planes planes, int here, floatv scale, int reach) {
     const int channels = CHANNELS_OF(feature);
     floatv own[3];
@@ -123,8 +124,8 @@ INLINE void see_neighbourhood(Layer *layer, int input, int feature, Planes plane
 
 INLINE void see_feature(Layer *layer, int feature, Planes planes, int here, floatv scale) {
     const int input = feature * STATISTICS;
-    // A loop, so that a statistic is multiplied by its weights at once. Else LLVM does that where the sums are needed,
-    // at the end, and keeps all weights until then: more than the scalar registers of AMD's GPUs hold.
+    // With a loop, each statistic is multiplied by its weights at once. Without it, LLVM multiplies where the sums are
+    // needed, at the end, and keeps all weights until then: more than the scalar registers of AMD's GPUs hold.
     ROLLED_FOR(wide, 0, 1) {
         see_neighbourhood(layer, input + 3 * wide, feature, planes, here, scale, wide ? WIDE : NEAR);
     }
@@ -134,7 +135,7 @@ INLINE void see_feature(Layer *layer, int feature, Planes planes, int here, floa
     see(layer, input + STATISTICS - 1, squashed(sqrt(gradient), HALFWAY_OF(feature)));
 }
 
-// Mean luminance of the wide neighbourhood.
+// Mean luminance of the larger neighbourhood.
 INLINE floatv mean_light(Planes planes, int here) {
     floatv sum = (floatv)(0.0f), taps = (floatv)(TINY);
     ROLLED_FOR(dy, -WIDE, WIDE) {
@@ -148,7 +149,7 @@ INLINE floatv mean_light(Planes planes, int here) {
     return sum / taps;
 }
 
-// The second layer: parameters from the first.
+// The second layer: computes the parameters from the hidden layer.
 INLINE void put_parameters(Layer layer, const int4 size, int s, int here, intv hit, __global float *parameters) {
     UNROLLED_FOR(j, HIDDEN) {
         const floatv h = layer.hidden[j] + layer.network[INPUTS * HIDDEN + j];
@@ -185,7 +186,7 @@ KERNEL network(const int4 size, __global const float *restrict network, __global
         see_feature(&layer, DEPTH, planes, here, 1.0f / max(z, (floatv)(TINY)));
         see_feature(&layer, NORMAL, planes, here, (floatv)(1.0f));
 #if HAS_ALBEDO
-        see_feature(&layer, ALBEDO, planes, here, (floatv)(1.0f));  // without it all its statistics are 0
+        see_feature(&layer, ALBEDO, planes, here, (floatv)(1.0f));  // without albedo, all its statistics are 0
 #endif
         __global const light_t *variance = PLANE(size, source, ILLUMINATION_VARIANCE, s, 0);
         const floatv own = load_variance(variance + here), around = smooth_variance(size, here, depth, variance);

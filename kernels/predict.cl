@@ -1,5 +1,5 @@
-// The prediction of the Kalman filter: what was known of each pixel's light, moved along motion, and what the new frame
-// differs from it by.
+// The prediction of the Kalman filter: moves the state of the previous frame along motion, and compares the new frame
+// with it.
 //
 //   p' = p + motion;  H, V, W, S, E, G = mean over the consistent taps, as in temporal.cl
 //   D = c - H
@@ -8,11 +8,11 @@
 // in   motion, guide, illumination: c; of the previous frame: guide, state, filtered light (its luminance is G)
 // out  prediction: H, V, W, S, G (W = 0 where nothing is known);
 //      innovation: D, E (NOTHING_KNOWN where nothing is known)
-// The root makes the noise of bright and of dark samples alike.
+// The root makes the noise of bright and dark samples similar.
 
-#define RESIDUAL_GAIN 0.3f  // of the running residual
+#define RESIDUAL_GAIN 0.3f  // weight of the new value in the running residual
 
-// Of one signal, at a tap or over the taps.
+// The state of one signal, at a tap or as a mean over the taps.
 typedef struct {
     floatv color[3], spread, count, tone, residual, luminance;
 } State;
@@ -78,7 +78,7 @@ INLINE Sums over_box(const int4 size, Expected e, Box box, float normal_threshol
     return sums;
 }
 
-// Decided once for all loads, which some compilers leave to each of them: a seventh less time on PoCL.
+// Decides once for all loads; some compilers would decide for each load. This saves a seventh of the time on PoCL.
 INLINE Sums footprint(const int4 size, Expected e, Box box, float normal_threshold, Previous previous) {
     Box together = box, apart = box;
     together.corner.adjacent = 1;
@@ -113,7 +113,7 @@ KERNEL predict(const int4 size, const int4 past_size, const float depth_threshol
     const Previous previous = {previous_guide, previous_state, filtered};
 
     Sums sums = no_sums();
-    if (frame_number > 0) {  // after a cut the previous frame is of another shot
+    if (frame_number > 0) {  // after a cut, the previous frame belongs to another shot
         const Box footprints = box_of(past_size, e.x, e.y, e.left, e.top, hit, 2);
         sums = footprint(past_size, e, footprints, normal_threshold, previous);
         const intv lost = hit & (sums.weight <= ENOUGH);

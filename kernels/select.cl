@@ -1,10 +1,10 @@
-// SBF's choice: at each pixel the scale of the bilateral filter whose risk, smoothed over the surface, is least.
+// SBF's choice: at each pixel, the scale of the bilateral filter with the least risk, smoothed over the surface.
 //
 //   i* = argmin sum w risk_i,  w = w_z w_n w_a over 7x7 taps;  c = c_i*
 //
 // in   guide;  candidate_1, ...: colour and risk of each scale
 // out  target: colour
-// Li et al. 2012, section 3.3: a single pixel's estimate of risk is too noisy to choose by.
+// Li et al. 2012, section 3.3: the estimated risk of a single pixel is too noisy for the choice.
 
 #define SCALES 4
 #define REACH 3  // 7x7 taps

@@ -1,8 +1,9 @@
-// Copies an image of 32-bit elements, bit for bit, between two layouts of any order, offset and strides.
+// Copies an image of 32-bit elements, bit for bit, between two layouts with any order, offset and strides.
 //
 //   to[y, x, k] = from[y, x, k]
 //
-// A work-item copies `run` pixels of a row: all of it on a CPU, one on a GPU, where neighbours work side by side.
+// A work-item copies `run` pixels of a row: a whole row on a CPU, one pixel on a GPU, where neighbours work side by
+// side.
 // from_layout, to_layout   number of the first element; then how many elements on the next row, pixel and channel lie
 
 __kernel void strided_copy(const int width, const int channels, const int run, const long4 from_layout,

@@ -6,13 +6,13 @@
 //
 // in   motion, guide: depth, moments: N, picture: modulated colour, history (YCoCg)
 // out  next history: t; out: RGB(t), not below 0, the user's (H, W, 3) array
-// Schied et al. 2017, section 5; Karis, High-Quality Temporal Supersampling, 2014. There is no tone map: what it makes
-// of a mean over time is darker than the mean.
+// Schied et al. 2017, section 5; Karis, High-Quality Temporal Supersampling, 2014. Light is not tone-mapped, because
+// the mean over time of tone-mapped light would be too dark.
 
-#define NEARER 0.9999f   // of a depth: what is not nearer by so much is as near
-#define HALF_PIXEL 0.5f  // from a pixel's centre, which has whole coordinates, to its edge
-#define KNOWN (-1e20f)   // history is below this before the first frame, and no light ever is
-#define TAPS 4           // of Catmull and Rom's spline
+#define NEARER 0.9999f   // a surface must be nearer than this share of a depth to count as nearer
+#define HALF_PIXEL 0.5f  // from a pixel's centre, at whole coordinates, to its edge
+#define KNOWN (-1e20f)   // history before the first frame is below this; light never is
+#define TAPS 4           // taps of Catmull and Rom's spline along an axis
 
 typedef struct {
     floatv channel[3];
@@ -27,8 +27,8 @@ INLINE YCoCg ycocg(floatv r, floatv g, floatv b) {
     return c;
 }
 
-// The share of the newest frame in the longest history of the 3x3 neighbourhood, and 0 where nothing was hit. What was
-// uncovered is new all over; beside an edge, rays that move within the pixel make a single pixel new again and again.
+// The share of the newest frame for the longest history of the 3x3 neighbourhood; 0 at a miss. Where a surface has just
+// come into view, the whole neighbourhood is new. Beside an edge, jittered rays make single pixels new again and again.
 INLINE floatv newest_share(const int4 size, int here, __global const light_t *moments) {
     floatv least = (floatv)(INFINITY);
     UNROLLED_FOR(j, 3) {
@@ -36,7 +36,7 @@ INLINE floatv newest_share(const int4 size, int here, __global const light_t *mo
             const int tap = moved(here, (j - 1) * size.z + i - 1);
 #ifdef MOMENTS_LENGTH
             const floatv share =
-                1.0f / load_light(SHARED_PLANE(size, moments, MOMENTS_LENGTH) + tap);  // of 0: infinite
+                1.0f / load_light(SHARED_PLANE(size, moments, MOMENTS_LENGTH) + tap);  // infinite for 0
 #else
             const floatv inverse = load_light(PLANE(size, moments, ILLUMINATION_INVERSE_COUNT, 0, 0) + tap);
             const floatv share = where(inverse > 0.0f, inverse, (floatv)(INFINITY));
@@ -47,9 +47,9 @@ INLINE floatv newest_share(const int4 size, int here, __global const light_t *mo
     return where(isfinite(least), min(least, (floatv)(1.0f)), (floatv)(0.0f));
 }
 
-// Where the nearest surface in the 3x3 neighbourhood is, as a distance in a plane: a pixel beside an edge moves with
-// the edge; with its own motion it would fetch, and keep, what the edge covered a frame ago. Nearly the same depth is
-// the same: rounding shall not choose between the pixels of a wall.
+// The nearest surface in the 3x3 neighbourhood, as a distance in a plane. A pixel beside an edge moves with the edge;
+// with its own motion, it would fetch and keep what the edge covered in the previous frame. Nearly equal depths count
+// as equal, so that rounding does not choose between the pixels of a wall.
 INLINE intv foremost(const int4 size, __global const float *depth) {
     const floatv own = load(depth);
     floatv limit = where(own > 0.0f, NEARER * own, (floatv)(INFINITY));
@@ -65,7 +65,7 @@ INLINE intv foremost(const int4 size, __global const float *depth) {
     return front;
 }
 
-// Of the surface at `front`, a pixel beside each at the most.
+// The motion of the surface at `front`, which is at most one pixel away from each pixel.
 INLINE Color motion_of(const int4 size, int x, int y, intv front, __global const float *motion) {
     if (places_of(LANES + front).adjacent) {
         const int down = (FIRST(front) > 1) - (FIRST(front) < -1);
@@ -80,19 +80,20 @@ INLINE Color motion_of(const int4 size, int x, int y, intv front, __global const
     return m;
 }
 
-// Catmull and Rom's weights of the taps around a fraction f behind pixel `first` of `count`; those outside count
-// nothing. Bilinear weights would soften edges a little more in every frame.
+// Catmull and Rom's weights of the taps around the position `first` + f, where f is a fraction; taps outside the image
+// have no weight. Bilinear weights would soften edges a little more in every frame.
 INLINE void catmull_rom(floatv f, intv first, int count, floatv *w) {
     const floatv outside = (floatv)(0.0f);
     w[0] = where(first > 0, f * (-0.5f + f * (1.0f - 0.5f * f)), outside);
     w[1] = where(first >= 0, 1.0f + f * f * (-2.5f + 1.5f * f), outside);
     w[2] = where(first < count - 1, f * (0.5f + f * (2.0f - 1.5f * f)), outside);
     w[3] = where(first < count - 2, f * f * (-0.5f + 0.5f * f), outside);
-    const floatv scale = 1.0f / (w[0] + w[1] + w[2] + w[3]);  // of at least a half, half a pixel outside the image
+    // the sum is at least a half, even half a pixel outside the image
+    const floatv scale = 1.0f / (w[0] + w[1] + w[2] + w[3]);
     UNROLLED_FOR(i, TAPS) w[i] *= scale;
 }
 
-// Of the taps around a place in the history.
+// The weights of the taps around a position in the history.
 INLINE YCoCg weighted(const int4 size, const floatv *across, const floatv *down, __global const float *place) {
     YCoCg sum;
     UNROLLED_FOR(k, 3) {
@@ -107,7 +108,7 @@ INLINE YCoCg weighted(const int4 size, const floatv *across, const floatv *down,
     return sum;
 }
 
-// History at p + (mx, my) + (past_x, past_y) where that is `seen`.
+// The history at p + (mx, my) + (past_x, past_y), for pixels that are `seen`.
 INLINE YCoCg read_history(const int4 size, int x, int y, intv seen, floatv mx, floatv my, int past_x, int past_y,
                           __global const float *history) {
     const intv whole_x = select((intv)(0), to_int(floor(mx)) + past_x, seen);
@@ -125,7 +126,8 @@ INLINE YCoCg read_history(const int4 size, int x, int y, intv seen, floatv mx, f
     catmull_rom(fx, x + LANES + whole_x, size.x, across);
     catmull_rom(fy, y + whole_y, size.y, down);
     UNROLLED_FOR(k, 3) h.channel[k] = (floatv)(0.0f);
-    // Motion is smooth nearly everywhere: a vector has one shift or two, and all lanes that share it load side by side.
+    // Motion is smooth nearly everywhere: a vector has one or two shifts, and all lanes with the same shift load
+    // together.
     while (any_lane(seen)) {
         const int next = GREATEST(select((intv)(INT_MIN), shift, seen));
         const YCoCg there = weighted(size, across, down, history + here + next);
@@ -135,14 +137,14 @@ INLINE YCoCg read_history(const int4 size, int x, int y, intv seen, floatv mx, f
     return h;
 }
 
-// Of the pixels at `picture`.
+// The colours of the pixels at `picture`.
 INLINE YCoCg load_ycocg(const int4 size, __global const float *picture) {
     floatv c[3];
     UNROLLED_FOR(k, 3) c[k] = load(PLANE(size, picture, PICTURE_COLOR, 0, k));
     return ycocg(c[0], c[1], c[2]);
 }
 
-// Least and greatest in the 3x3 neighbourhood; a tap outside the image gives way to its neighbour inside.
+// Minimum and maximum over the 3x3 neighbourhood; a tap outside the image is replaced by its neighbour inside.
 INLINE void extent(const int4 size, int x, int y, __global const float *picture, YCoCg *low, YCoCg *high) {
     const intv leftmost = x + LANES == 0, rightmost = x + LANES == size.x - 1;
     *low = *high = load_ycocg(size, picture + at(size, x, y));
@@ -158,7 +160,7 @@ INLINE void extent(const int4 size, int x, int y, __global const float *picture,
     }
 }
 
-// The 3x3 neighbourhood's mean; a tap outside the image counts nothing.
+// The weighted mean over the 3x3 neighbourhood; a tap outside the image has no weight.
 INLINE YCoCg filtered(const int4 size, int x, int y, float pixel_filter, __global const float *picture) {
     const float middle = 1.0f - 2.0f * pixel_filter;
     const floatv left = where(x + LANES > 0, (floatv)(pixel_filter), (floatv)(0.0f));
@@ -187,7 +189,7 @@ KERNEL taa(const int4 size, const int4 past_size, const float alpha_taa, const f
     const int here = at(size, x, y);
     const intv front = foremost(size, SHARED_PLANE(size, guide, GUIDE_DEPTH) + here);
     const Color m = motion_of(size, x, y, front, motion);
-    // Motion is held against the distances to the image's edges, which are exact; a position p' would be rounded.
+    // Motion is compared with the distances to the image's edges, which are exact; a position p' would be rounded.
     const floatv left = -HALF_PIXEL - to_float(x + past_x + LANES), right = left + (float)past_size.x;
     const float top = -HALF_PIXEL - (float)(y + past_y), bottom = top + (float)past_size.y;
     intv seen = (m.channel[0] >= left) & (m.channel[0] < right);  // false for NaN

@@ -1,4 +1,4 @@
-// Temporal accumulation: the running mean of illumination and of its luminance's mean and variance along motion.
+// Temporal accumulation: means of light over time, along motion, and mean and variance of its luminance.
 //
 //   p' = p + motion;  history = mean over the consistent taps of the 2x2 footprint at p', else of the 3x3 around it;
 //   taps of another albedo count 1/64
@@ -7,8 +7,8 @@
 //
 // in   motion, guide, illumination (of this frame); guide, colour history, moments (of the previous one)
 // out  accumulated: c;  moments: N, M, V
-// Schied et al. 2017, sections 4.1 and 4.2. M and V are the paper's raw moments rewritten (M = mu1, V = mu2 - mu1^2) so
-// that nothing cancels for bright, steady pixels.
+// Schied et al. 2017, sections 4.1 and 4.2. M and V are the paper's raw moments in another form (M = mu1, V = mu2 -
+// mu1^2) that loses no digits for bright, steady pixels.
 
 // The previous frame's light at a tap.
 typedef struct {
@@ -47,7 +47,7 @@ INLINE History no_history(void) {
     return h;
 }
 
-// Mixes in one tap. The variance of a mixture is the mean of the variances plus the spread of the means.
+// Adds one tap. The variance of a mixture is the mean of the variances plus the variance of the means.
 INLINE void add_past(History *h, Past tap, floatv w) {
     h->weight += w;
     const floatv share = where(h->weight > 0.0f, w / h->weight, (floatv)(0.0f));
@@ -99,7 +99,7 @@ INLINE History surroundings(const int4 size, Expected e, Nine nine, float normal
     return h;
 }
 
-// `accumulated` may lie where `illumination` does: a pixel of either is touched by its own work-item alone.
+// `accumulated` may be in the memory of `illumination`: each pixel is accessed by its own work-item only.
 KERNEL temporal(const int4 size, const int4 past_size, const float alpha_color, const float alpha_moments,
                 const float depth_threshold, const float normal_threshold, const float albedo_threshold,
                 const int frame_number, const int past_x, const int past_y, __global const float *restrict motion,
@@ -115,7 +115,7 @@ KERNEL temporal(const int4 size, const int4 past_size, const float alpha_color, 
     const Previous previous = {previous_guide, history, previous_moments};
 
     History h = no_history();
-    if (frame_number > 0) {  // after a cut the previous frame is of another shot
+    if (frame_number > 0) {  // after a cut, the previous frame belongs to another shot
         const Box footprints = box_of(past_size, e.x, e.y, e.left, e.top, hit, 2);
         h = footprint(past_size, e, footprints, normal_threshold, previous);
     }

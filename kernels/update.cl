@@ -1,7 +1,7 @@
-// The update of the Kalman filter: the prediction, corrected by what has changed of the light, blended with new light.
+// The update of the Kalman filter: corrects the prediction by the change of light, and blends it with new light.
 //
-//   A, B, q, R at p: mean of the up to four pixels around it that have them, weighted bilinearly and by geometry; where
-//   none of these shows the same surface, from the 7x7 pixels around p instead
+//   A, B, q, R at p: mean of the one, two or four coarse pixels around it, weighted bilinearly and by geometry; if none
+//   of these is on the same surface, from the 7x7 pixels around p instead
 //   q += 4 l(A)^2 / (R / (1 + min(W, 1)) + 1e-5 l(H)^2)
 //   H += A,  S += B,  E -= B,  W += q,  G += l(A)
 //   a = max(alpha, W / (1 + W)),  d = l(c) - l(H)
@@ -13,13 +13,13 @@
 // W is the variance of H, in units of that of a sample: about 1 / N after N samples.
 
 #define DOUBT_OF_CHANGE 4.0f
-#define RELATIVE_DOUBT 1e-5f  // of light, however even it was
-#define MOST_DOUBT 1e3f       // of W: then the new sample is all that counts
-#define ENOUGH_AROUND 1e-3f   // sum of the weights of the pixels around
+#define RELATIVE_DOUBT 1e-5f  // as a share of light, however constant it was
+#define MOST_DOUBT 1e3f       // largest W; above this, the new sample alone counts
+#define ENOUGH_AROUND 1e-3f   // least sum of the weights of the coarse pixels
 #define UNKNOWN (-1.0f)
 #define DIRECT_REACH 3  // 7x7 taps
 
-// Of one signal.
+// The state of one signal.
 typedef struct {
     floatv color[3], residual, doubt, spread;
 } Correction;
@@ -39,7 +39,8 @@ INLINE Corrections no_corrections(void) {
     return c;
 }
 
-// The values of a coarse plane to the left and to the right of this work-item's pixels; at every second they are one.
+// The coarse values to the left and to the right of each of this work-item's pixels; at every second pixel they are
+// equal.
 typedef struct {
     floatv side[2];
 } Beside;
@@ -69,7 +70,7 @@ INLINE Beside load_beside(__global const float *coarse, int x) {
 INLINE Corrections interpolated(const int4 coarse_size, int x, int y, Facet facet, __global const float *facets,
                                 __global const float *correction) {
     Corrections sum = no_corrections();
-    const floatv between = to_float((x + LANES) & 1);  // the pixels to the left and to the right, or the one here twice
+    const floatv between = to_float((x + LANES) & 1);  // where the coarse pixels to the left and to the right differ
     const float log2_h = (y & 1) ? -2.0f : -1.0f;
     for (int j = 0; j <= (y & 1); ++j) {
         const int dy = (y & 1) ? 2 * j - 1 : 0;
@@ -112,7 +113,7 @@ INLINE Corrections scaled(Corrections c, floatv scale) {
     return c;
 }
 
-// The test of change.cl at one scale, over the pixels right around: for what is too thin for every second pixel.
+// The test of change.cl at one scale, over the 7x7 pixels around each: for objects too thin for the coarse grid.
 INLINE Corrections direct(const int4 size, int here, Facet facet, float threshold, __global const float *guide,
                           __global const float *innovation, __global const float *prediction) {
     Corrections sum = no_corrections();
@@ -209,7 +210,7 @@ KERNEL update(const int4 size, const int4 coarse_size, const float sigma_depth, 
         UNROLLED_FOR(k, 3) {
             const floatv predicted = load(PLANE(size, prediction, PREDICTION_COLOR, s, k) + here);
             const floatv innovated = predicted + load(PLANE(size, innovation, INNOVATION_COLOR, s, k) + here);
-            sample[k] = max(innovated, (floatv)(0.0f));  // c, but for the rounding of c - H
+            sample[k] = max(innovated, (floatv)(0.0f));  // c, apart from the rounding of c - H
             corrected[k] = max(predicted + c.color[k], (floatv)(0.0f));
             const floatv blended = corrected[k] + a * (sample[k] - corrected[k]);
             store_light(where(known, blended, sample[k]), PLANE(size, state, ILLUMINATION_COLOR, s, k) + here);

@@ -1,4 +1,4 @@
-// Variance of luminance: temporal where history is long enough, else estimated over space.
+// Variance of luminance: over time if the history is long enough, otherwise estimated over space.
 //
 //   N >= 3.5:  Var = V
 //   else:    M~ = sum w M / sum w,  Var = 4 / N * sum w (V + (M - M~)^2) / sum w,  over 7x7,  w = w_z w_n w_a
@@ -7,8 +7,8 @@
 // out  illumination: its variance plane(s)
 // Schied et al. 2017, section 4.2; the weights are those of the a-trous filter without luminance.
 
-// Frames from which the temporal estimate serves. Asking for 3.5 keeps a resampled length of 4 from failing by
-// rounding.
+// From this length of the history on, the temporal estimate is used. With 3.5, a resampled length of 4 does not fail
+// because of rounding.
 #define LONG_HISTORY 4.0f
 #define NEARLY_LONG 3.5f
 #define REACH 3  // 7x7 taps
@@ -27,8 +27,8 @@ INLINE void add_moments(Moments *sum, floatv w, const int4 size, int tap, const 
     }
 }
 
-// Sums over the neighbourhood. They are taken about the centre's own mean: the centre is one of the samples, so the
-// variance is never small against the shift and the difference does not cancel.
+// Sums over the neighbourhood, relative to the centre's own mean. The centre is one of the samples, so the variance is
+// never much smaller than the shift, and the difference loses no digits.
 INLINE Moments neighbourhood(const int4 size, int here, Surface surface, const floatv *centre,
                              __global const float *guide, __global const light_t *moments) {
     Moments sum;
@@ -38,7 +38,8 @@ INLINE Moments neighbourhood(const int4 size, int here, Surface surface, const f
         ROLLED_FOR(dx, -REACH, REACH) {
             const int tap = moved(here, dy * size.z + dx);
             floatv w = weight(surface_exponent(surface, depth_scale(surface.facet, dx, dy), 0.0f, size, tap, guide));
-            w = where(w > FAINTEST, w, (floatv)(0.0f));  // even so faint, the square of light of 1e10 would show
+            // even such a small weight would matter for the square of light of 1e10
+            w = where(w > FAINTEST, w, (floatv)(0.0f));
             if (dx == 0 && dy == 0) w = (floatv)(1.0f);
             add_moments(&sum, w, size, tap, centre, moments);
         }
