@@ -115,7 +115,9 @@ def fit(
     ] = [],  # noqa: B006  # never changed; typer wants the default spelled here
     held_out: Annotated[
         list[str],
-        typer.Option(metavar="SCENE", help=f"A scene to judge by; may be repeated. By default {', '.join(HELD_OUT)}."),
+        typer.Option(
+            metavar="SCENE", help=f"A held-out scene to measure, may be repeated. By default {', '.join(HELD_OUT)}."
+        ),
     ] = [],  # noqa: B006
     rooms: Annotated[int, typer.Option(metavar="N", min=1, help="Rooms to fit to.")] = 8,
     steps: Annotated[int, typer.Option(metavar="N", min=1, help="Trials of each fit.")] = 80,
@@ -123,9 +125,9 @@ def fit(
     spp: Annotated[int, typer.Option(metavar="N", min=2, help="Samples per pixel of a truth.")] = 64,
     markdown_: Annotated[bool, typer.Option("--markdown", help="Print tables as markdown.")] = False,
 ) -> None:
-    """Fit settings to random rooms, and say what they gain on other scenes.
+    """Fit settings to random rooms, and measure the gain on other scenes.
 
-    PYOPENCL_CTX chooses the device. Truths are kept in the user's cache folder.
+    PYOPENCL_CTX chooses the device. Truths are stored in the user's cache folder.
     """
     chosen = filters or list(FITTED)
     for name in chosen:

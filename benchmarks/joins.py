@@ -41,7 +41,9 @@ def joins(
     size: Annotated[str, typer.Option(metavar="WxH", help="Size of the frames.")] = "320x180",
     frames: Annotated[int, typer.Option(metavar="N", min=max(WARM_UPS) + 2, help="Frames of the whole shot.")] = 96,
     spp: Annotated[int, typer.Option(metavar="N", min=2, help="Samples per pixel of the truth.")] = 256,
-    jitter: Annotated[bool, typer.Option(help="Send rays through another point of the pixel in every frame.")] = True,
+    jitter: Annotated[
+        bool, typer.Option(help="Send rays through a different point of the pixel in every frame.")
+    ] = True,
     markdown_: Annotated[bool, typer.Option("--markdown", help="Print the table as markdown.")] = False,
 ) -> None:
     """Measure joins between chunks by the length of the warm-up, with the default filter.

@@ -73,9 +73,9 @@ def measured(
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="Gets the pictures of the middle frame as PNG.")
     ] = None,
 ) -> None:
-    """Measure what it gains to look ahead, over the forward run alone and over Open Image Denoise frame by frame.
+    """Measure the gain of looking ahead over the forward run alone, and over Open Image Denoise frame by frame.
 
-    PYOPENCL_CTX chooses the device. The truth takes minutes a scene to render, and is kept in the user's cache folder.
+    PYOPENCL_CTX chooses the device. Rendering the truth takes minutes per scene; it is stored in the user's cache.
     """
     require_oidn()
     shape = parse_size(size)

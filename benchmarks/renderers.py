@@ -91,9 +91,9 @@ def measured(
     folder: Annotated[list[Path], typer.Argument(help="Folders with noisy/ and reference/.")],
     markdown_: Annotated[bool, typer.Option("--markdown", help="Print the table as markdown.")] = False,
 ) -> None:
-    """Measure what `svgf-cl denoise` without any option gains on frames of renderers.
+    """Measure the gain of `svgf-cl denoise` without options on frames of renderers.
 
-    Leaves with exit code 1 where a picture became worse by any of the measures. PYOPENCL_CTX chooses the device.
+    The exit code is 1 if any measure became worse. PYOPENCL_CTX chooses the device.
     """
     gains = []
     with progress_bar("denoising", len(folder)) as advance:

@@ -63,7 +63,7 @@ def speed_against_error(
 ) -> None:
     """Measure time, error against the oracle and error against path-traced truth of every variant.
 
-    The truth takes some minutes to render the first time, and is kept in the user's cache folder.
+    Rendering the truth takes some minutes; it is stored in the user's cache folder.
     """
     require_flip()
     if spp % (2 * CHUNK):

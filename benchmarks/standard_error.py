@@ -39,9 +39,9 @@ def standard_error(
     spp: Annotated[int, typer.Option(metavar="N", min=2, help="Samples per pixel of the truth.")] = 256,
     markdown_: Annotated[bool, typer.Option("--markdown", help="Print the table as markdown.")] = False,
 ) -> None:
-    """Hold the standard error that the Kalman filter gives out against path-traced truth.
+    """Compare the Kalman filter's own standard error with its error against path-traced truth.
 
-    PYOPENCL_CTX chooses the device. The truth takes minutes a scene to render, and is kept in the user's cache folder.
+    PYOPENCL_CTX chooses the device. Rendering the truth takes minutes per scene; it is stored in the user's cache.
     """
     rows = []
     choice = Choice(parse_size(size), frames, None, spp, jitter=False)

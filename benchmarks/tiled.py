@@ -26,7 +26,7 @@ from svgf_cl.io.synthetic import PERIOD, room_frames
 def main(
     width: Annotated[int, typer.Option(min=64)] = 1280,
     height: Annotated[int, typer.Option(min=64)] = 720,
-    tiles: Annotated[int, typer.Option(min=2, help="How many tiles.")] = 4,
+    tiles: Annotated[int, typer.Option(min=2, help="Number of tiles.")] = 4,
     rounds: Annotated[int, typer.Option(min=1)] = 10,
 ) -> None:
     """Compare the time of a frame in tiles with that of the whole frame, with the default filter."""

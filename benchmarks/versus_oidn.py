@@ -112,11 +112,11 @@ def versus_oidn(
     json_: Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write all samples there, too.")] = None,
     markdown_: Annotated[bool, typer.Option("--markdown", help="Print tables as markdown.")] = False,
 ) -> None:
-    """Time svgf_cl and Open Image Denoise by turns, hold the ratios against the bars, and compare their errors.
+    """Time svgf_cl and Open Image Denoise in turns, compare the ratios with the bars, and compare the errors.
 
-    svgf_cl takes part with SVGF, of 5x5 and of 3x3 taps, and with its default filter, to which --set applies.
-    PYOPENCL_CTX chooses its device. OIDN gets as many CPU threads as that device has, or all where it is no CPU.
-    The truth takes a minute or two to render the first time, and is kept in the user's cache folder.
+    svgf_cl runs SVGF with 5x5 and with 3x3 taps, and its default filter, to which --set applies. PYOPENCL_CTX chooses
+    its device. OIDN gets as many CPU threads as that device has, or all threads if it is not a CPU. Rendering the truth
+    takes a minute or two; it is stored in the user's cache folder.
     """
     found = compared(parse_size(size), parse_settings(DEFAULT.name, set_), rounds, clean_aux=clean_aux)
     device = devices.choose(devices.list_devices())

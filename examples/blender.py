@@ -60,11 +60,15 @@ def parsed() -> argparse.Namespace:
     """Read the options; inside Blender these are the ones after ``--``."""
     before = "--" if "--" in sys.argv else sys.argv[-1] if bpy.app.binary_path else sys.argv[0]
     parser = argparse.ArgumentParser(prog="blender.py", description="Render in Blender and denoise.")
-    parser.add_argument("folder", nargs="?", type=Path, default=Path("out/examples/blender"), help="gets the frames")
+    parser.add_argument(
+        "folder", nargs="?", type=Path, default=Path("out/examples/blender"), help="folder for the frames"
+    )
     parser.add_argument("--scene", type=Path, metavar="SCENE.blend")
-    parser.add_argument("--samples", type=int, default=2, metavar="N", help="a pixel (2)")
-    parser.add_argument("--frames", type=int, default=8, metavar="N", help="from the scene's first one on (8)")
-    parser.add_argument("--svgf-cl", default="svgf-cl", metavar="COMMAND", help="how svgf-cl is called")
+    parser.add_argument("--samples", type=int, default=2, metavar="N", help="samples per pixel (2)")
+    parser.add_argument(
+        "--frames", type=int, default=8, metavar="N", help="number of frames, from the scene's first one on (8)"
+    )
+    parser.add_argument("--svgf-cl", default="svgf-cl", metavar="COMMAND", help="command of svgf-cl")
     options = parser.parse_args(sys.argv[sys.argv.index(before) + 1 :])
     options.folder, options.svgf_cl = options.folder.resolve(), shlex.split(options.svgf_cl)
     if not shutil.which(options.svgf_cl[0]):

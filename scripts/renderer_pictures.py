@@ -31,7 +31,9 @@ QUALITY = 82
 
 def main() -> None:
     """Make and write a picture."""
-    parser = argparse.ArgumentParser(description="Write a picture of frames before and after, beside the reference.")
+    parser = argparse.ArgumentParser(
+        description="Write a picture of frames before and after denoising, beside the reference."
+    )
     parser.add_argument("target", type=Path)
     parser.add_argument("folders", nargs="+", metavar="FOLDER[:X,Y,W,H]")
     options = parser.parse_args()

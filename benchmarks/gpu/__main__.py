@@ -20,14 +20,14 @@ from svgf_cl.io.atomic import output_folder
 def gpu(
     output: Annotated[
         Path,
-        typer.Option("-o", "--output", metavar="DIR", help="Gets report.md, report.json and what they are made of."),
+        typer.Option("-o", "--output", metavar="DIR", help="Gets report.md, report.json and the files of all steps."),
     ] = Path("out/gpu"),
     device: Annotated[
         str,
         typer.Option(
             metavar="NAME",
             envvar=devices.VARIABLE,
-            help="The device, as svgf-cl devices names it; else the fastest GPU.",
+            help="The device, as named by svgf-cl devices; by default the fastest GPU.",
         ),
     ] = "",
     dry_run: Annotated[
@@ -36,9 +36,9 @@ def gpu(
 ) -> None:
     """Test, tune and time a GPU, and write a report.
 
-    In under ten minutes: every device and whether it works, the kernels against the float64 oracle, the fastest
-    tuning, which is kept for later runs, times, and each kernel's error. Nothing is taken from the network. A step that
-    fails is told with its reason, and the others go on; the exit code is 1 then.
+    It takes less than ten minutes and needs no network. It lists the devices, compares the kernels with the float64
+    oracle, finds the fastest tuning and stores it for later runs, and measures times and each kernel's error. If a step
+    fails, the reason is reported, the other steps continue, and the exit code is 1.
     """
     if device:
         os.environ[devices.VARIABLE] = device

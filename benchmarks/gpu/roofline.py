@@ -303,7 +303,7 @@ def roofline(
         Path | None, typer.Option(metavar="FILE", help="kernels.json of python -m benchmarks.gpu_static; adds a table.")
     ] = None,
 ) -> None:
-    """Set what the filters declare against published limits of GPUs: the least times that are possible."""
+    """Compute the shortest possible times from the filters' declarations and published limits of GPUs."""
     made = {"docs/gpu.md": text([*all_tables()])}
     if counts:
         found, about = read_counts(counts)

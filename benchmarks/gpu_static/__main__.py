@@ -24,14 +24,14 @@ SHOWN = 20  # the most faults to print; a broken header breaks every kernel
 
 def gpu_static(
     output: Annotated[
-        Path, typer.Option("-o", "--output", metavar="DIR", help="Where kernels.json, kernels.md and summary.md go.")
+        Path, typer.Option("-o", "--output", metavar="DIR", help="Gets kernels.json, kernels.md and summary.md.")
     ] = Path("out/gpu_static"),
     record: Annotated[bool, typer.Option("--record", help="Record the registers found as the new budgets.")] = False,
 ) -> None:
-    """Compile every kernel for GPUs of NVIDIA and AMD and to SPIR-V, on a machine without any.
+    """Compile every kernel for GPUs of NVIDIA and AMD and to SPIR-V, on a machine without a GPU.
 
-    Leaves with exit code 1 where a kernel spills registers, needs scratch memory, does not compile, is no valid module,
-    or takes more registers than budgets.json allows.
+    The exit code is 1 if a kernel spills registers, needs scratch memory, does not compile, is not a valid module, or
+    needs more registers than budgets.json allows.
     """
     compilers = tools.find()
     folder = output_folder(output)

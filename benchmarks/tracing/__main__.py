@@ -19,17 +19,17 @@ from svgf_cl_tracer.cli.scenes import require_tracer
 def tracing(
     scene: Annotated[str, typer.Argument(metavar="[SCENE]", help=SCENE_HELP)] = "cornell",
     size: Size = "1280x720",
-    rounds: Annotated[int, typer.Option(metavar="N", min=1, help="How often everything is timed, in turn.")] = 9,
+    rounds: Annotated[int, typer.Option(metavar="N", min=1, help="Number of rounds in which everything is timed.")] = 9,
     old: Earlier = None,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="DIR", help="Also write results.json and split.png there."),
     ] = None,
 ) -> None:
-    """Time the path tracer against raw Embree, and say what its time and memory go to.
+    """Compare the path tracer's time with raw Embree, and show the parts of its time and memory.
 
     A frame of 1 sample per pixel with its G-buffer, motion, one bounce and shadow rays is rendered, and all its rays
-    are traced again by Embree alone, in turns. New processes tell start and memory, a reference the noise.
+    are traced again by Embree alone, in turns. New processes show start-up time and memory, a reference the noise.
 
     \b
     Examples:

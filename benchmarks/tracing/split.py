@@ -108,14 +108,14 @@ def loop_shares(recording: Recording) -> Seconds:
 
 
 def cpu_time(prepare: Callable[[Shading], Callable[[], object]], calls: Sequence[Shading]) -> float:
-    """Seconds that all cores spend on what `prepare` makes of each call, without the preparation."""
+    """CPU seconds of the functions that `prepare` makes from the calls, on all cores, without the preparation."""
     tally = Tally()
     share_out(lambda call: tally.timed("")(prepare(call)), calls, THREADS)
     return tally.seconds[""]
 
 
 def again(call: Shading) -> Callable[[], object]:
-    """The loop as it was."""
+    """The loop with its original arguments."""
     return shading(call, Features.empty(len(call.draws.pixels)))
 
 

@@ -86,10 +86,11 @@ class Progress:
 
 def train(
     scenes: Annotated[
-        list[str], typer.Argument(metavar="[SCENE]...", help="Scenes to train on beside the rooms.")
+        list[str], typer.Argument(metavar="[SCENE]...", help="Scenes for training in addition to the rooms.")
     ] = [],  # noqa: B006  # never changed; typer wants the default spelled here
     held_out: Annotated[
-        list[str], typer.Option(metavar="SCENE", help="A scene to judge by; may be repeated. Four rooms always are.")
+        list[str],
+        typer.Option(metavar="SCENE", help="A held-out scene, may be repeated; four held-out rooms are always used."),
     ] = [],  # noqa: B006
     rooms: Annotated[int, typer.Option(metavar="N", min=1, help="Random rooms to train on.")] = 40,
     rounds: Annotated[int, typer.Option(metavar="N", min=1, help="Rounds, each on other pixels.")] = 16,
@@ -100,10 +101,11 @@ def train(
         Path, typer.Option("-o", "--output", metavar="FILE", help="Where to write the network.")
     ] = SHIPPED,
 ) -> None:
-    """Train LBF's network and write it, with the data and the time that made it and its error on held-out scenes.
+    """Train LBF's network, and write it with the data and time of the training and its error on held-out scenes.
 
-    Each round minimises the error over another draw of pixels (L-BFGS). What is found is kept beside the output as
-    FILE.part after each round: the same command resumes there after a break, and ends with the same numbers.
+    Each round minimises the error over another draw of pixels (L-BFGS). After each round the
+    state is stored beside the output as FILE.part. After an interruption, the same command continues from there, and
+    gives the same numbers.
     """
     course = Course(rooms, rounds, pixels, size, spp, tuple(scenes))
     shots = Shots(parse_size(size), spp)

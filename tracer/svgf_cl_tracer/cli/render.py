@@ -32,7 +32,7 @@ SKY_HELP = (
 SCENE_HELP = "A folder with a scene.json; a glTF, GLB or OBJ file; or a built-in scene, which svgf-cl scenes lists."
 FRAMES_HELP = "Number of frames. By default 24, or as many as show what a built-in scene is made for."
 ALTERNATIVE_HELP = "Light the scene by the alternative_lights of its scene.json."
-REFERENCE_HELP = "Also write a reference of each frame, of at least so many samples per pixel; 0: none."
+REFERENCE_HELP = "Also write a reference of each frame, with at least this many samples per pixel; 0: none."
 ERROR_HELP = (
     "Also write a reference of each frame whose relative error (the root of relMSE) is estimated to be at most this, "
     "for example 0.01; of at least 64 samples per pixel unless --reference-spp is given."
