@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from benchmarks.command import run
+from benchmarks.markdown import markdown
 from benchmarks.mistakes import MISTAKES, ROOM, Mistake, Taken, good_sequence
 from svgf_cl import check_sequence
 from svgf_cl.check import CHECKS, Report
@@ -121,11 +122,10 @@ def outcome(mistake: Mistake, report: Report) -> str:
 
 def table(columns: dict[str, dict[str, str]]) -> str:
     """A markdown table with one row for each mistake."""
-    rows = [["mistake", *columns], ["---"] * (1 + len(columns))]
-    rows += [[name, *(column[name] for column in columns.values())] for name in ("none", *MISTAKES)]
+    rows = [[name, *(column[name] for column in columns.values())] for name in ("none", *MISTAKES)]
     named = [sum(cell in (FOUND, ALSO) for cell in column.values()) for column in columns.values()]
     rows.append([f"found, of {len(MISTAKES)}", *map(str, named)])
-    return "\n".join(f"| {' | '.join(row)} |" for row in rows) + "\n"
+    return markdown(("mistake", *columns), rows)
 
 
 def checks() -> str:

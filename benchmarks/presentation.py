@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from benchmarks.markdown import markdown as in_markdown
 from benchmarks.measurements import Result
 from benchmarks.pareto import pareto_front
 from svgf_cl.bench.tables import Table
@@ -97,8 +98,7 @@ def table(title: str, results: Sequence[Result], columns: Sequence[Column]) -> T
 
 def markdown(table: Table) -> str:
     """The table in Markdown for docs/results.md, without its title."""
-    lines = [table.columns, ["---"] * len(table.columns), *table.rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
+    return in_markdown(table.columns, table.rows)
 
 
 def plot(results: Sequence[Result], footages: Sequence[str], title: str) -> bytes:

@@ -12,6 +12,7 @@ import typer
 
 from benchmarks.command import run as run_command
 from benchmarks.gpu_static import budgets, gate, tables, tools, variants
+from benchmarks.markdown import markdown
 from svgf_cl.bench.results import commit_info
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.io.atomic import output_folder, write_text
@@ -81,10 +82,10 @@ def about(versions: Mapping[str, str]) -> dict[str, str]:
 def write(folder: Path, rows: Sequence[gate.Row], about: Mapping[str, str]) -> None:
     """Write all tables."""
     header = ", ".join(f"{name} {value}" for name, value in about.items())
-    every = tables.markdown((*tables.COLUMNS, *tables.COUNTED), tables.every(rows))
+    every = markdown((*tables.COLUMNS, *tables.COUNTED), tables.every(rows))
     write_text(folder / "kernels.json", tables.document(rows, about))
     write_text(folder / "kernels.md", f"{header}\n\n{every}")
-    write_text(folder / "summary.md", f"{header}\n\n{tables.markdown(SUMMARY, tables.usual(rows))}\n{integer(rows)}\n")
+    write_text(folder / "summary.md", f"{header}\n\n{markdown(SUMMARY, tables.usual(rows))}\n{integer(rows)}\n")
 
 
 def integer(rows: Sequence[gate.Row]) -> str:

@@ -64,9 +64,3 @@ def most_usual(rows: Sequence[Row]) -> dict[tuple[str, str], Row]:
 def cell(row: Row | None) -> str:
     """The cell of a row; empty if the kernel did not compile."""
     return f"{row.usage.registers}, {row.occupancy:.0%}, {row.instructions.total}" if row else ""
-
-
-def markdown(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table in Markdown."""
-    lines = (columns, ["---"] * len(columns), *rows)
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"

@@ -29,9 +29,5 @@ def test_the_first_variant_in_short() -> None:
     assert shown == ["atrous/atrous", "", "64, 50%, 100", "", "", "87, 62%, 100"]
 
 
-def test_markdown() -> None:
-    assert tables.markdown(("a", "b"), [("1", "2")]) == "| a | b |\n| --- | --- |\n| 1 | 2 |\n"
-
-
 def test_the_share_of_integers_is_of_the_first_variant() -> None:
     assert tables.integer_share(ROWS, "atrous/atrous") == "sm_90 30%, gfx90a 30%"
