@@ -128,8 +128,8 @@ def paired_medians(samples: Sequence[Sequence[float]]) -> list[float]:
 
     Parameters
     ----------
-    The times of each variant, turn by turn.
-        For each variant, its times turn by turn.
+    samples : (V, N) of float
+        The times of each variant, turn by turn.
     """
     times = np.asarray(samples)
     medians: list[float] = (np.median(times[0]) * np.median(times / times[0], axis=1)).tolist()

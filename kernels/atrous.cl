@@ -10,7 +10,7 @@
 //   GUIDED_BY_VARIANCE 0, EAW:
 //     w_c = exp(-|c - c'|^2 / (sigma_color / step)^2)
 //
-// in   guide: normal, depth, albedo;  source: colour and, but for EAW, variance;  in Kalman guidance
+// in   guide: normal, depth, albedo;  source: colour and, except for EAW, variance;  for Kalman guidance
 // out  target: the same
 // Schied et al. 2017, sections 4.3 and 4.4; Dammertz et al. 2010. All terms and h share one exponential. Offsets come
 // in pairs +d and -d, which share the scale of w_z.

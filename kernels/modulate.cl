@@ -3,7 +3,7 @@
 //   demodulate   c = min(max((radiance - emission) / albedo', 0), MAX_LIGHT)
 //   modulate     out = sum over signals c * albedo' + emission
 //
-// in   radiance of each signal; albedo, emission, id where the frame has them; normal, depth
+// in   radiance of each signal; albedo, emission, id if the frame has them; normal, depth
 // out  guide: normal, depth (both 0 on a miss), id, albedo (as a code);  illumination: c
 // A single signal contains the emission; of two signals, neither does. With TAA `out` is a picture, otherwise the
 // user's array. Texture does not go through the filter (Schied et al. 2017, section 3): modulate multiplies by albedo',

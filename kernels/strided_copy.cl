@@ -4,7 +4,7 @@
 //
 // A work-item copies `run` pixels of a row: a whole row on a CPU, one pixel on a GPU, where neighbours work side by
 // side.
-// from_layout, to_layout   number of the first element; then how many elements on the next row, pixel and channel lie
+// from_layout, to_layout   index of the first element; then the distance in elements to the next row, pixel and channel
 
 __kernel void strided_copy(const int width, const int channels, const int run, const long4 from_layout,
                            const long4 to_layout, __global const uint *restrict from, __global uint *restrict to) {

@@ -33,8 +33,8 @@ class Step:
     title : str
     command : tuple of str
         A module and its arguments.
-    Its time limit.
-        It is stopped after so long.
+    seconds : int
+        Its time limit.
     result : Path
         The file that it writes.
     read : callable

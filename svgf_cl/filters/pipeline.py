@@ -69,9 +69,9 @@ class Quantity:
 class Life(Enum):
     """How long a buffer is needed."""
 
-    SCRATCH = "within a frame; its memory may serve others before and after"
-    HISTORY = "into the next frame, which reads it before it writes it anew"
-    PAIR = "into the next frame, which reads it while it writes another"
+    SCRATCH = "within one frame; other buffers may use its memory before and after"
+    HISTORY = "until the next frame has read it, before that frame writes it again"
+    PAIR = "until the next frame has read it, while that frame writes the other buffer of the pair"
 
 
 @dataclass(frozen=True)

@@ -67,7 +67,7 @@ class Clip(Protocol):
     numbers : sequence of int
         The frames' numbers, as in the files' names.
     cuts : collection of int
-        Indices of the frames that begin a new shot.
+        Indices of the frames that do not follow the previous frame, and so begin without history.
     has_references : bool
         Whether any frame has a reference.
     prefilter : {"auto", "on", "off"}

@@ -3,10 +3,10 @@
 ========  ========  ================================================================================================
 request   path      answer
 ========  ========  ================================================================================================
-GET       /         the page; its parts lie beside it (`FILES`)
-GET       /clip     what is played, the filters with their settings, and what to begin with; JSON
-POST      /frame    ``{"index": 3, "filter": "kalman", "settings": {}, "exposure": 0.0}`` to the pictures of a frame:
-                    noisy, denoised, and reference where there is one, each 8-bit RGB, row by row from the top; the
+GET       /         the page; its other files have their own paths (`FILES`)
+GET       /clip     the clip, the filters with their settings, and the initial state; JSON
+POST      /frame    for ``{"index": 3, "filter": "kalman", "settings": {}, "exposure": 0.0}``, the pictures of a frame:
+                    noisy, denoised, and the reference if there is one, each 8-bit RGB, row by row from the top; the
                     header ``Frame`` has times and measures as JSON
 ========  ========  ================================================================================================
 
@@ -182,7 +182,7 @@ class Handler(BaseHTTPRequestHandler):
     server: Server
 
     def do_GET(self) -> None:
-        """Send the page, a part of it, or what is played."""
+        """Send the page, one of its files, or the clip."""
         if not self._is_from_here():
             return
         if self.path == "/clip":
