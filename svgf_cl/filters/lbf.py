@@ -70,8 +70,8 @@ class Network:
 class Lbf(BilateralFilter):
     """Parameters of the learning-based filter (Kalantari et al. 2015). Equations: docs/algorithm.md, section 8.
 
-    A small network reads statistics of each pixel's neighbourhood, and sets the parameters of a bilateral filter at this
-    pixel. It was trained on frames of this project's tracer (docs/lbf.md). LBF is for comparison.
+    A small network reads statistics of each pixel's neighbourhood, and sets the parameters of a bilateral filter
+    there. It was trained on frames of this project's tracer (docs/lbf.md). LBF is for comparison.
     """
 
     name: ClassVar[str] = "lbf"
