@@ -14,7 +14,7 @@ demo: device  ## render a built-in scene with noise and denoise it
 	$(BIN)/svgf-cl demo
 
 test: device  ## run the tests
-	$(BIN)/python -m pytest -n auto --maxprocesses 8
+	$(BIN)/python -m pytest -n auto --maxprocesses 8 --dist worksteal
 
 test-all: implementations  ## run the tests on PoCL, Intel's runtime, rusticl, Oclgrind and every GPU; show each kernel's error
 	$(BIN)/python -m scripts.test_all

@@ -15,7 +15,10 @@ from pathlib import Path
 from benchmarks.implementations import Environment, environments
 from benchmarks.suites import suite
 
-OPTIONS = ("-n", "auto", "--maxprocesses", "8", "--durations", "12", "--durations-min", "5")
+# worksteal: tests of one file stay together, as what they share (a compiled kernel, a rendered scene) is made by each
+# process that needs it.
+PARALLEL = ("-n", "auto", "--maxprocesses", "8", "--dist", "worksteal")
+OPTIONS = (*PARALLEL, "--durations", "12", "--durations-min", "5")
 
 
 def ends_well(*module: str, environment: Environment | None = None) -> bool:

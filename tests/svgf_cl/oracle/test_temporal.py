@@ -267,17 +267,18 @@ class TestOracle:
             assert out.shape == (*shape, 3)
             assert np.isfinite(out).all()
 
-    @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, -1.0])
     @pytest.mark.parametrize(
         "field", ["color", "albedo", "normal", "depth", "motion", "emission", "direct", "indirect"]
     )
-    def test_bad_input_does_no_harm(self, kind: type[Filter], rng: np.random.Generator, field: str, bad: float) -> None:
+    def test_bad_input_does_no_harm(self, kind: type[Filter], rng: np.random.Generator, field: str) -> None:
+        """Every kind of bad value has rows of its own."""
         extra: dict[str, Any] = (
             {name: rng.random((*SHAPE, 3)) for name in ("direct", "indirect")} if field.endswith("direct") else {}
         )
         frame = bumpy(rng, emission=rng.random((*SHAPE, 3)), **extra)
         broken = replace(frame, **{field: getattr(frame, field).copy()})
-        getattr(broken, field)[2:9, 3:8] = bad
+        for row, bad in zip((1, 4, 7, 10), (np.nan, np.inf, -np.inf, -1.0), strict=True):
+            getattr(broken, field)[row : row + 2, 3:8] = bad
         oracle = oracle_of(kind(taa=True), SHAPE)
         for f in (broken, frame, broken, broken):
             out = oracle.denoise(f)
