@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import typer
+from PIL import Image
 
-from scripts import pass_table, scene_description
+from scripts import pass_table, picture, scene_description
 from svgf_cl import chunks
 from svgf_cl.cli import application
 from svgf_cl.device import apart
@@ -73,6 +74,15 @@ def test_the_description_of_scenes_is_up_to_date() -> None:
 def test_the_tables_of_passes_are_up_to_date() -> None:
     written = (ROOT / pass_table.TARGET).read_text()
     assert written == pass_table.page(written), "run scripts/pass_table.py"
+
+
+def test_the_caption_of_the_picture_says_what_it_shows() -> None:
+    page = (ROOT / "README.md").read_text()
+    shown = re.findall(r"\(`(\w+)`, (?:frame )?(\d+)", page.split(f"]({picture.TARGET})")[1].split("## ")[0])
+    assert shown == [(part.scene, str(part.frame)) for part in picture.PARTS]
+    assert f"The reference has {picture.SPP} samples per pixel." in page
+    assert f"a reference of {picture.SPP} samples per pixel" in (ROOT / "docs/renderers/other.md").read_text()
+    assert Image.open(ROOT / picture.TARGET).width == picture.SHAPE[1]
 
 
 def test_a_page_without_marks_is_refused() -> None:

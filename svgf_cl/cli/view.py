@@ -69,6 +69,9 @@ def view(
             help="Also render references of the scene with N samples per pixel; they are kept for the next run.",
         ),
     ] = None,
+    jitter: Annotated[
+        bool, typer.Option(help="Move the scene's rays within the pixel, with a new offset in each frame.")
+    ] = False,
     allow_gaps: AllowGaps = False,
     format_: reading.Format = None,
     maps: reading.Maps = [],  # noqa: B006
@@ -88,6 +91,7 @@ def view(
     Examples:
       svgf-cl view
       svgf-cl view cornell --spp 64
+      svgf-cl view fence --jitter --set taa=on
       svgf-cl view 'shot/####.exr' --filter svgf
       svgf-cl view out/demo/noisy --reference out/demo/reference --set taa=on
     """
@@ -99,7 +103,7 @@ def view(
     how = reading.read_as(format_, maps, view_layer, cameras, still_camera, motion_scale, motion_flip)
     is_files = bool(inputs) and not any(map(is_scene, inputs))
     if is_files:
-        refuse_rendering({"--size": size, "--frames": frames, "--spp": spp})
+        refuse_rendering({"--size": size, "--frames": frames, "--spp": spp, "--jitter": jitter})
     else:
         refuse_files({"--reference": reference, "--allow-gaps": allow_gaps, "options of reading": how != ReadAs()})
     shape = parse_measured_size(size or SIZE)
@@ -107,7 +111,7 @@ def view(
         if is_files:
             clip: Clip = of_files(inputs, reference, how, allow_gaps=allow_gaps)
         else:
-            clip = of_scene(inputs, shape, frames, spp)
+            clip = of_scene(inputs, shape, frames, spp, jitter=jitter)
         player = Player(clip, settings)
         print(f"{clip.name}: {server.url} (Ctrl-C ends it)", flush=True)
         if browser:
@@ -133,22 +137,26 @@ def of_files(inputs: Sequence[str], reference: Path | None, how: ReadAs, *, allo
     return FilesClip(shot, find_references(reference, numbers) if reference else {})
 
 
-def of_scene(inputs: Sequence[str], shape: tuple[int, int], frames: int | None, spp: int | None) -> Clip:
+def of_scene(
+    inputs: Sequence[str], shape: tuple[int, int], frames: int | None, spp: int | None, *, jitter: bool
+) -> Clip:
     """The clip of a scene; of the room where none is named."""
     from svgf_cl.view.scenes import open_footage, room, scene
 
     if not inputs:
-        refuse_spp(spp)
+        refuse_of_room(spp, jitter=jitter)
         return room(shape, frames)
     if len(inputs) > 1:
         raise SvgfError(f"expected one scene, or only frames, got {len(inputs)} arguments with a scene among them")
-    footage = open_footage(inputs[0], shape, frames, spp)
+    footage = open_footage(inputs[0], shape, frames, spp, jitter=jitter)
     typer.echo(f"{footage.name}: rendering the first two frames, then the page opens", err=True)
     with progress_bar("references", footage.steps if spp else 0) as advance:
         return scene(footage, has_references=spp is not None, advance=advance)
 
 
-def refuse_spp(spp: int | None) -> None:
-    """Raise `SvgfError` where samples are given for the room, whose references are exact."""
+def refuse_of_room(spp: int | None, *, jitter: bool) -> None:
+    """Raise `SvgfError` where an option of scenes is given for the room."""
     if spp is not None:
         raise SvgfError("--spp: expected a scene, got none; the references of the room are exact")
+    if jitter:
+        raise SvgfError("--jitter: expected a scene, got none; the room is seen through pixel centres")

@@ -23,8 +23,8 @@ def room(shape: Shape, count: int | None) -> RenderedClip:
     return RenderedClip("room", "1 sample per pixel, exact reference", shape, count, items, has_references=True)
 
 
-def open_footage(name: str, shape: Shape, count: int | None, spp: int | None) -> Footage:
-    """Open a scene by its name, folder or file, with rays through pixel centres.
+def open_footage(name: str, shape: Shape, count: int | None, spp: int | None, *, jitter: bool) -> Footage:
+    """Open a scene by its name, folder or file.
 
     Parameters
     ----------
@@ -34,13 +34,15 @@ def open_footage(name: str, shape: Shape, count: int | None, spp: int | None) ->
         Number of frames; by default, as many as the scene needs.
     spp : int, optional
         Samples per pixel of the references; without it there are no references.
+    jitter : bool
+        Whether rays go through a different point of the pixel in each frame; references are then means over the pixel.
 
     Raises
     ------
     SvgfError
         If no package renders scenes here, or there is no such scene.
     """
-    return opener()(name, Choice(shape, count, ALL, spp or 2, jitter=False))
+    return opener()(name, Choice(shape, count, ALL, spp or 2, jitter=jitter))
 
 
 def scene(footage: Footage, *, has_references: bool, advance: Callable[[], None]) -> RenderedClip:
@@ -49,7 +51,8 @@ def scene(footage: Footage, *, has_references: bool, advance: Callable[[], None]
     While references are rendered, `advance` is called ``footage.steps`` times.
     """
     truths = dict(truths_of(footage, advance)) if has_references else {}
-    note = footage.note if has_references else "1 sample per pixel, rays go through pixel centres; no reference"
+    rays = "rays move within the pixel" if footage.jitter else "rays go through pixel centres"
+    note = footage.note if has_references else f"1 sample per pixel, {rays}; no reference"
     return RenderedClip(
         footage.name, note, footage.shape, len(footage.numbers), items(footage, truths), has_references=has_references
     )

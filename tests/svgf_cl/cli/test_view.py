@@ -73,6 +73,7 @@ def test_the_browser_is_opened(monkeypatch: pytest.MonkeyPatch) -> None:
         ("--set iterations: expected a whole number", ["--set", "iterations=many"]),
         ("--size: expected WIDTHxHEIGHT", ["--size", "big"]),
         ("--spp: expected a scene, got none", ["--spp", "8"]),
+        ("--jitter: expected a scene, got none", ["--jitter"]),
         ("--reference: expected frames in files, got a scene", ["--reference", "pictures"]),
         ("options of reading: expected frames in files", ["cornell", "--map", "depth=Z"]),
         ("expected one scene, or only frames, got 2 arguments", ["cornell", "swing"]),
@@ -84,8 +85,8 @@ def test_wrong_input_is_refused_before_anything_is_rendered(words: str, argv: li
 
 
 def test_options_of_scenes_are_refused_with_files(rendered: Path, refused) -> None:
-    for option, value in (("--size", "32x18"), ("--frames", "2"), ("--spp", "8")):
-        refused(f"{option}: expected ", "view", rendered, option, value)
+    for option, *value in (("--size", "32x18"), ("--frames", "2"), ("--spp", "8"), ("--jitter",)):
+        refused(f"{option}: expected ", "view", rendered, option, *value)
 
 
 def test_a_reference_without_its_frame_is_refused(rendered: Path, tmp_path: Path, refused) -> None:

@@ -20,8 +20,11 @@ SHAPE = (18, 32)
 class Rendered:
     """Footage of the room whose truth differs in its halves."""
 
-    name, note, shape, jitter, identity = "stage", "as it was made", SHAPE, False, "stage"
+    name, note, shape, identity = "stage", "as it was made", SHAPE, "stage"
     numbers, judged, steps = range(3), range(3), 3
+
+    def __init__(self, *, jitter: bool = False) -> None:
+        self.jitter = jitter
 
     def frames(self) -> Iterator[Frame]:
         return room_frames(SHAPE, 3)
@@ -44,21 +47,25 @@ def test_references_are_the_mean_of_both_halves() -> None:
         assert np.array_equal(item.reference, np.full((*SHAPE, 3), index + 0.5, np.float32))
 
 
-def test_without_references_none_is_rendered() -> None:
+@pytest.mark.parametrize(
+    ("jitter", "rays"), [(False, "rays go through pixel centres"), (True, "rays move within the pixel")]
+)
+def test_without_references_none_is_rendered(jitter: bool, rays: str) -> None:
     def advance() -> None:
         raise AssertionError("expected no truth")
 
-    clip = scene(Rendered(), has_references=False, advance=advance)
+    clip = scene(Rendered(jitter=jitter), has_references=False, advance=advance)
     assert (clip.has_references, clip.read(1).reference) == (False, None)
-    assert "no reference" in clip.note
+    assert clip.note == f"1 sample per pixel, {rays}; no reference"
 
 
-def test_a_scene_is_opened_by_what_is_installed(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("jitter", [False, True])
+def test_a_scene_is_opened_by_what_is_installed(jitter: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[tuple[str, Choice]] = []
     monkeypatch.setattr(module, "opener", lambda: lambda name, choice: asked.append((name, choice)) or Rendered())
-    assert isinstance(open_footage("stage", SHAPE, 5, 32), Rendered)
+    assert isinstance(open_footage("stage", SHAPE, 5, 32, jitter=jitter), Rendered)
     ((name, choice),) = asked
-    assert (name, choice.shape, choice.frames, choice.spp, choice.jitter) == ("stage", SHAPE, 5, 32, False)
+    assert (name, choice.shape, choice.frames, choice.spp, choice.jitter) == ("stage", SHAPE, 5, 32, jitter)
     assert choice.judged is not None
     assert choice.judged >= 5, "every frame has a reference"
 
@@ -66,7 +73,7 @@ def test_a_scene_is_opened_by_what_is_installed(monkeypatch: pytest.MonkeyPatch)
 def test_without_anything_that_renders_the_error_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("svgf_cl.compare.footage.entry_points", lambda group: [])
     with pytest.raises(SvgfError, match="needs the tracer: pip install"):
-        open_footage("cornell", SHAPE, None, None)
+        open_footage("cornell", SHAPE, None, None, jitter=False)
 
 
 def test_the_rooms_reference_is_what_its_noise_averages_to() -> None:
