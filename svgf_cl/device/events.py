@@ -1,4 +1,4 @@
-"""What must be complete before a frame's arrays may be read."""
+"""Collects the events that must complete before a frame's arrays may be read."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from svgf_cl.interchange import UserArray
 
 
 def pending(wait_for: Sequence[cl.Event], arrays: Mapping[str, UserArray], queue: cl.CommandQueue) -> list[cl.Event]:
-    """Those given, and those of device arrays that may still be being computed.
+    """Return the events of `wait_for`, and the events of device arrays that other queues may still be computing.
 
     Raises
     ------
     FrameError, ArgumentError
-        If one is no event of the queue's context, or its command has failed. Drivers would hang, or not tell.
+        If one is not an event of the queue's context, or its command has failed. Drivers would hang, or not report it.
     """
     try:
         events = [("wait_for", event) for event in wait_for]
@@ -30,7 +30,7 @@ def pending(wait_for: Sequence[cl.Event], arrays: Mapping[str, UserArray], queue
 
 
 def unfinished(value: UserArray, queue: cl.CommandQueue) -> Iterator[cl.Event]:
-    """Events of a device array on other queues; this one keeps its order."""
+    """Yield the events of a device array on other queues; this queue runs its commands in order anyway."""
     if isinstance(value, cl_array.Array):
         yield from (event for event in value.events if event.command_queue != queue)
 
