@@ -84,7 +84,7 @@ def test_where_numpy_arrays_are_copied_the_copies_are_timed(
 
 @pytest.mark.parametrize(
     ("seconds", "steady", "reason"),
-    [("0", float("inf"), "no time was left for "), ("1e6", -1.0, "the default's own time wavers by ")],
+    [("0", float("inf"), "no time was left for "), ("1e6", -1.0, "the default's own time varies by ")],
 )
 def test_what_is_in_doubt_is_not_stored(
     seconds: str, steady: float, reason: str, store: Path, monkeypatch: pytest.MonkeyPatch, capsys
