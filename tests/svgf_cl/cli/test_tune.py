@@ -56,7 +56,7 @@ def test_of_a_search_that_breaks_off_the_file_holds_what_was_tried(tmp_path: Pat
     monkeypatch.setattr(tuner.Tuner, "search", broken)
     assert run("tune", "--size", "32x18", "--seconds", "1e6", "--json", tmp_path / "tune.json") == 130
     written = json.loads((tmp_path / "tune.json").read_text())
-    assert written["verdict"] == "the search has not come to its end"
+    assert written["verdict"] == "the search is not finished"
     assert len(written["trials"]) >= 2
 
 
