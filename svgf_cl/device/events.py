@@ -1,12 +1,13 @@
-"""Collects the events that must complete before a frame's arrays may be read."""
+"""Collects the events that must complete before a frame's arrays may be read, and reads the times of events."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import pyopencl as cl
 import pyopencl.array as cl_array
 
+from svgf_cl.errors import SvgfError
 from svgf_cl.frame import wrong
 from svgf_cl.interchange import UserArray
 
@@ -33,6 +34,21 @@ def unfinished(value: UserArray, queue: cl.CommandQueue) -> Iterator[cl.Event]:
     """Yield the events of a device array on other queues; this queue runs its commands in order anyway."""
     if isinstance(value, cl_array.Array):
         yield from (event for event in value.events if event.command_queue != queue)
+
+
+def times(queue: cl.CommandQueue, events: Iterable[tuple[str, cl.Event]]) -> Iterator[tuple[str, float]]:
+    """Yield the label and the milliseconds of each event, after all commands on the queue.
+
+    Raises
+    ------
+    SvgfError
+        If the queue does not profile.
+    """
+    if not queue.properties & cl.command_queue_properties.PROFILING_ENABLE:
+        raise SvgfError("profile(): the queue was made without PROFILING_ENABLE")
+    queue.finish()
+    for label, event in events:
+        yield label, 1e-6 * (event.profile.end - event.profile.start)
 
 
 def check_event(name: str, event: cl.Event, context: cl.Context) -> None:
