@@ -319,7 +319,9 @@ class Denoiser:
             if self._arrays is None:
                 raise SvgfError("Denoiser: expected one that is open, got one after close() or the end of its 'with'")
             if self._is_running:
-                raise SvgfError("Denoiser: expected no call from after_pass, for the frame is not complete; got one")
+                raise SvgfError(
+                    "Denoiser: expected no call from after_pass, because the frame is not complete; got one"
+                )
             yield self._arrays
 
     @contextmanager

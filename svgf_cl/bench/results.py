@@ -56,7 +56,7 @@ class DeviceRecord:
         return f"{self.platform}: {self.device}"
 
     def as_json(self) -> dict[str, Any]:
-        """Return all fields, with those of the ceilings beside the others."""
+        """Return all fields, including those of the ceilings, in one dict."""
         own = asdict(self)
         return own | (own.pop("ceilings") or {})
 

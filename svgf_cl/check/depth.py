@@ -25,12 +25,12 @@ FOCAL_LENGTHS = np.geomspace(0.3, 4.0, 16)  # in image heights, for depth along 
 
 NOT_LINEAR = (
     "not linear: a depth buffer, or one over the distance",
-    "convert: near far / (far - d (far - near)) if 0 is near and 1 is far; 1 / d of the reciprocal",
+    "convert: near far / (far - d (far - near)) if 0 is near and 1 is far; 1 / d if d is one over the distance",
 )
 MISTAKES = (
     NOT_LINEAR,  # depth itself is affine
     ("does not begin at the camera: scaled between near and far plane", "convert: near + d (far - near)"),
-    ("inverted: it falls with the distance", "convert: far - d of what was far - z"),
+    ("inverted: it falls with the distance", "convert: far - d if d is far - z"),
     *[("measured along the ray", "multiply by the cosine between the ray and the camera's axis")] * len(FOCAL_LENGTHS),
     NOT_LINEAR,  # all depths are almost equal, as in a buffer whose near plane is very near: the last choice
 )

@@ -11,7 +11,7 @@ EXPECTED = {
     "color": "linear HDR radiance, noisy, without exposure or view transform",
     "normal": "world-space unit vectors, 0 where the ray hit nothing",
     "depth": "distance along the camera's axis, linear, above 0, +inf where the ray hit nothing",
-    "motion": "previous minus current position in pixels, x right, y down, no jitter; third component: that of depth",
+    "motion": "previous minus current position in pixels, x right, y down, no jitter; third component: that for depth",
     "albedo": "linear reflectance, 0 to 1",
     "id": "whole numbers; the same object has the same one in every frame",
     "emission": "linear radiance of visible lamps and sky, also contained in color",

@@ -102,7 +102,7 @@ def parse_layout(shape: Shape, tuning: Tuning, settings: Filter) -> Layout:
         return layout_of(shape, tuning, settings)
     except SvgfError as error:
         raise SvgfError(
-            f"--size: expected frames whose buffers indices of 32 bits reach (about 11000x11000), got {extent(shape)}"
+            f"--size: expected at most about 11000x11000 pixels, because indices have 32 bits, got {extent(shape)}"
         ) from error
 
 

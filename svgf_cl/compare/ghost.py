@@ -7,7 +7,7 @@ old picture there, o, is a ghost if it still shows:
 
 Here p is the picture and t the truth, both display-referred. The sums are over all pixels that were uncovered in one of
 the last `GHOST_FRAMES` frames, including this one. 0 means that nothing remains, 1 that the old picture is still there.
-If the camera or the object moves, o moves along with the uncovered surface, as a filter's history does. Pixels beside
+If the camera or the object moves, o moves along with the uncovered surface, as a filter's history does. Pixels next to
 an edge do not count, because they may mix both sides of it. The truth's own noise does not count, because the two
 factors of each product come from different halves of the truth (`svgf_cl.compare.halves`).
 
@@ -66,7 +66,7 @@ class Uncovered:
 
     @property
     def lately(self) -> Mask:
-        """Where there may be a ghost, (H, W)."""
+        """The pixels that may have a ghost, (H, W)."""
         mask: Mask = self.age < GHOST_FRAMES
         return mask
 

@@ -12,7 +12,7 @@ from PIL import Image
 from svgf_cl.compare.metrics import flip_map, why_no_flip
 from svgf_cl.io.display import Bytes
 
-QUALITY = 92  # of a WebP file: its errors are invisible beside noise
+QUALITY = 92  # of a WebP file: its errors are invisible next to noise
 MAP_QUALITY = 75  # of an error map, which only shows where errors are
 LARGEST = 16383  # pixels along a side of a WebP file
 FPS = 8.0

@@ -60,7 +60,7 @@ def is_beyond(value: float, side: str, limit: float) -> bool:
 def complaint(measure: Measure, value: float | None, side: str, limit: float) -> str:
     """Return what is wrong with a value; empty if nothing is."""
     if value is None or math.isnan(value):
-        return f"{measure.title} was not measured: pixels are NaN, or the frames show nothing it is about"
+        return f"{measure.title} was not measured: pixels are NaN, or the frames show nothing that it measures"
     if not is_beyond(value, side, limit):
         return ""
     unit = f" {measure.unit}" if measure.unit else ""

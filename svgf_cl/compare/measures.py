@@ -39,7 +39,7 @@ class Measure:
 
     @property
     def aim(self) -> str:
-        """Which values are good, in words; empty if none are better than others."""
+        """The good values, in words; empty if no value is better than another."""
         if self.ideal is not None:
             return f"nearest to {self.ideal:g} is best"
         return {1: "more is better", -1: "less is better"}.get(self.sign, "")
@@ -81,7 +81,9 @@ MEASURES = (
     Measure("detail", "detail", "", ".0%", 0, 1.0, "how much of moving textures' finest contrast is kept"),
     Measure("ghost", "ghost", "", ".0%", 0, 0.0, "how much of the old picture remains where a surface came into view"),
     Measure("unsettled", "unsettled", "", ".1%", -1, None, "thin geometry that is clearly wrong"),
-    Measure("lag", "lag", "frames", ".0f", -1, None, "frames until 90 % of a lamp's switching are followed, at most"),
+    Measure(
+        "lag", "lag", "frames", ".0f", -1, None, "frames until 90 % of a lamp's change is followed; the longest of all"
+    ),
 )
 
 

@@ -37,7 +37,7 @@ class OidnFilter:
     Attributes
     ----------
     nbytes : int
-        Memory that OIDN uses beside the images, in bytes: how much the process grew.
+        Memory that OIDN uses in addition to the images, in bytes: how much the process grew.
 
     Raises
     ------

@@ -56,17 +56,17 @@ class Reprojection:
 
     @cached_property
     def seen(self) -> Mask:
-        """Which of the four show the same surface and count, (4, H, W)."""
+        """The pixels of the four that count and show the same surface, (4, H, W)."""
         return self.same & self._counts
 
     @cached_property
     def found(self) -> Mask:
-        """Where all pixels that count show the same surface, (H, W)."""
+        """The surface's pixels for which all of the four that count show the same surface, (H, W)."""
         return self.hit & (self.seen | ~self._counts).all(axis=0)
 
     @cached_property
     def uncovered(self) -> Mask:
-        """Where no pixel of the previous frame shows the same surface, though the place is inside the image, (H, W)."""
+        """The surface's pixels for which none of the four shows the same surface, though they are inside, (H, W)."""
         return self.hit & (self.inside | ~self._counts).all(axis=0) & ~self.seen.any(axis=0)
 
     @cached_property

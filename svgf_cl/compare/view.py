@@ -72,12 +72,12 @@ class View:
 
     @cached_property
     def past(self) -> Reprojection | None:
-        """Where surfaces were in the previous frame, if that is known."""
+        """The positions of surfaces in the previous frame, if they are known."""
         return None if self.earlier is None else Reprojection.between(self.earlier[0], self.frame)
 
     @cached_property
     def resting(self) -> Mask:
-        """Where the surface is known not to have moved since the previous frame."""
+        """The pixels whose surface is known not to have moved since the previous frame."""
         if self.past is None:
             return np.zeros(self.frame.shape, np.bool_)
         return self.past.found & (speed(self.frame) < STILL)
@@ -94,7 +94,7 @@ class View:
 
     @cached_property
     def thin(self) -> Mask:
-        """Where geometry is a few pixels thin."""
+        """The pixels of geometry that is a few pixels thin."""
         return thin(self.frame)
 
     @cached_property

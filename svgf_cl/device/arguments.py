@@ -67,7 +67,8 @@ def check_queue(queue: cl.CommandQueue | None) -> cl.CommandQueue:
         _ = queue.context.devices  # on Intel's runtime a queue does not keep its context alive
     except (cl.CommandQueueUsedAfterExit, cl.Error) as error:
         raise SvgfError(
-            f"Denoiser: expected a queue before the end of its 'with', whose Context is kept; got a dead one ({error})"
+            "Denoiser: expected a queue that is in use, before the end of its 'with' and with a Context that is kept "
+            f"alive; got a dead one ({error})"
         ) from error
     if queue.properties & cl.command_queue_properties.OUT_OF_ORDER_EXEC_MODE_ENABLE:
         raise SvgfError("Denoiser: expected an in-order queue, got one with OUT_OF_ORDER_EXEC_MODE_ENABLE")

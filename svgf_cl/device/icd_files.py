@@ -29,7 +29,7 @@ def faults() -> list[tuple[str, str]]:
     icds = [place] if place.suffix == ".icd" else sorted(place.glob("*.icd"))
     found = [(str(icd), fault_of_file(icd)) for icd in icds]
     if chosen and place.is_dir() and not icds:
-        found = [(f"{VARIABLE}={chosen}", f"holds no .icd file; unset it for those in {SYSTEM_VENDORS}")]
+        found = [(f"{VARIABLE}={chosen}", f"has no .icd file; unset it for those in {SYSTEM_VENDORS}")]
     elif chosen and not icds:  # loaders treat such a value as a driver's library
         found = [(f"{VARIABLE}={chosen}", fault_of_library(chosen))]
     return [(name, fault) for name, fault in found if fault]

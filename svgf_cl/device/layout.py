@@ -78,5 +78,5 @@ class Layout:
 
 
 def rounded_up(length: int, unit: int) -> int:
-    """The least multiple of `unit` that is no less than `length`."""
+    """Return the least multiple of `unit` that is no less than `length`."""
     return -(-length // unit) * unit

@@ -18,7 +18,7 @@ TURNS = 2  # after this many frames the halves of every pair are back in their p
 
 @dataclass(frozen=True)
 class Fill:
-    """A part of a buffer to fill at a cut, so that it says that the past is unknown.
+    """A part of a buffer to fill at a cut, which marks the history as unknown.
 
     Parameters
     ----------

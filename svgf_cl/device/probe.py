@@ -144,7 +144,7 @@ def _remember(answers: dict[str, str]) -> None:
 def _main(wanted: str) -> None:
     device = next((device for device in _listed() if key(device) == wanted), None)
     if device is None:
-        sys.exit("the loader does not list the device in a process of its own")
+        sys.exit("the loader does not list the device in a separate process")
     print(f"\n{apart.answer(run(device))}", flush=True)
 
 

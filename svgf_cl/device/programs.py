@@ -169,7 +169,7 @@ def _log(message: str) -> str:
 def _literal(value: Define) -> str:
     if isinstance(value, str):
         if not value or any(character.isspace() for character in value):
-            raise ValueError(f"a macro's text must not be empty or hold spaces, got {value!r}")
+            raise ValueError(f"a macro's text must not be empty or contain spaces, got {value!r}")
         return value
     if isinstance(value, numbers.Integral):  # NumPy's integers too
         return str(int(value))

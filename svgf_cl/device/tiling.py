@@ -37,10 +37,12 @@ class Tiling:
     def __post_init__(self) -> None:
         for entry in self.pipeline.passes:
             if self.pipeline.past_of(entry) and not entry.follows_motion:
-                raise ValueError(f"{entry.label}: expected to read the past along motion, or to work on whole frames")
+                raise ValueError(
+                    f"{entry.label}: expected to read the previous frame along motion, or to work on whole frames"
+                )
         for resource in (*self.past, *self.results):
             if resource.spacing > 1:
-                raise ValueError(f"{resource.name}: expected what is kept on the host to hold every pixel")
+                raise ValueError(f"{resource.name}: expected a resource that is kept on the host to have every pixel")
 
     @cached_property
     def past(self) -> dict[Resource, tuple[Quantity, ...]]:

@@ -137,7 +137,7 @@ def stored_tuning(device: cl.Device) -> Tuning | None:
         tuning.check(device)
     except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
         warnings.warn(
-            f"{store_path()}: cannot be used ({error!r}), so devices run untuned; 'svgf-cl tune' writes it anew",
+            f"{store_path()}: cannot be used ({error!r}), so devices run untuned; 'svgf-cl tune' writes it again",
             stacklevel=2,
         )
         return None

@@ -26,7 +26,7 @@ from svgf_cl.io.readers.reader import HELPERS, Found, LightPasses, Pass, Reader,
 SIZES = {field: max(1, min(sizes)) for field, sizes in CHANNELS.items()} | HELPERS
 
 CAMERAS = "give the camera of each frame in cameras.json beside the frames, or with --cameras FILE"
-STILL = "if the camera and all things stand still, give --still-camera"
+STILL = "if neither the camera nor any object moves, give --still-camera"
 
 
 @dataclass(frozen=True)

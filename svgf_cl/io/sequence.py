@@ -177,7 +177,8 @@ def in_order(files: Sequence[Path]) -> list[Path]:
     odd = [name.path.name for name in names if not name.is_padded(usual)]
     if odd:
         warnings.warn(
-            f"{listed(odd)}: padded in another way than other frames, so perhaps of another run; read as the same shot",
+            f"{listed(odd)}: padded in another way than the other frames, so perhaps from another run; "
+            "read as the same shot",
             stacklevel=3,
         )
     return [name.path for name in names]
