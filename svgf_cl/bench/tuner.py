@@ -45,7 +45,7 @@ GPU_CHOICES: dict[str, tuple[Any, ...]] = CHOICES | {
     "work_group": ((64, 1), (128, 1), (256, 1), (8, 8), (16, 4), (32, 2), (16, 8), (32, 4), (64, 4), (32, 8), (16, 16)),
 }
 
-SECONDS = 45.0  # after this time only the rounds that a result needs at least are begun
+SECONDS = 45.0  # after this time no candidate is built, and only the rounds that a result needs at least are run
 FINAL_SHARE = 0.15  # of these seconds
 
 WARM_UP = 3  # frames; then kernels are built and memory is in use

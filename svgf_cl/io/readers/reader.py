@@ -86,8 +86,7 @@ class Pass:
 
     def read(self, planes: Sequence[Array]) -> Array:
         """Make the field from its planes."""
-        values = planes[0] if self.size == 1 else np.stack(planes, axis=-1)
-        return self.convert(values) if self.convert else values
+        return joined(planes, self.convert)
 
 
 @dataclass(frozen=True)
@@ -123,8 +122,7 @@ class Exactly:
 
     def read(self, planes: Sequence[Array]) -> Array:
         """Make the field from its planes."""
-        values = planes[0] if len(self.names) == 1 else np.stack(planes, axis=-1)
-        return self.convert(values) if self.convert else values
+        return joined(planes, self.convert)
 
 
 @dataclass(frozen=True)
@@ -190,6 +188,12 @@ class Reader:
             if there:
                 sources[name] = there[0]
         return sources
+
+
+def joined(planes: Sequence[Array], convert: Convert | None) -> Array:
+    """Return planes (H, W) as one array, (H, W) if there is one plane, else (H, W, C); converted, if necessary."""
+    values = planes[0] if len(planes) == 1 else np.stack(planes, axis=-1)
+    return convert(values) if convert else values
 
 
 def has_attribute(image: Image, start: str) -> bool:
