@@ -1,7 +1,7 @@
-"""`Camera`, and the motion of still geometry between the cameras of two frames.
+"""`Camera`, and the motion of static geometry between the cameras of two frames.
 
-Everything is computed in double precision: a camera may stand far from the origin, and a motion is a small difference
-of two positions.
+Everything is computed in double precision, because a camera may be far from the origin, and a motion is a small
+difference of two positions.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from svgf_cl.matrices import Array, inverse, projection_of, rigid
 FovAxis = Literal["x", "y", "smaller", "larger"]
 Axes = Literal["opencv", "opengl", "mitsuba", "renderman"]
 
-# Which way the x, y and z of a camera's own space point: 1 for right, down and forward, -1 for the opposite.
+# The directions of x, y and z in a camera's own space: 1 for right, down and forward, -1 for the opposite.
 AXES: dict[str, tuple[int, int, int]] = {
     "opencv": (1, 1, 1),
     "opengl": (1, -1, -1),  # Blender, glTF and USD too
@@ -30,29 +30,29 @@ AXES: dict[str, tuple[int, int, int]] = {
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Camera:
-    """A pinhole or an orthographic camera: where it sees a point of the world.
+    """A pinhole or an orthographic camera, which maps points of the world to pixels.
 
-    Its view axes are x to the right, y down, and z forward, which is the depth of docs/conventions.md. It sees the view
-    point (x, y, z) at ``(focal[0] * x / z + center[0], focal[1] * y / z + center[1])``; an orthographic camera does not
-    divide by z. Pixel centres are at whole coordinates, (0, 0) in the upper left pixel, and pixels are those of the
-    image as a whole: of the display window of an OpenEXR file, wherever its data window is.
+    Its view axes are x to the right, y down, and z forward, which is the depth of docs/conventions.md. The point
+    (x, y, z) in view space is seen at ``(focal[0] * x / z + center[0], focal[1] * y / z + center[1])``; an orthographic
+    camera does not divide by z. Pixel centres are at whole coordinates, with (0, 0) in the upper left pixel. Pixels
+    count in the whole image, which is the display window of an OpenEXR file, wherever its data window is.
 
     Parameters
     ----------
     world_to_view : (4, 4) array
-        A rotation and a translation, with or without a reflection, that turn a column (x, y, z, 1) of world space into
-        view space.
+        A rotation and a translation, with or without a reflection, from columns (x, y, z, 1) of world space to view
+        space.
     focal : (float, float)
-        Focal length in pixels, along x and y, > 0. Of an orthographic camera: pixels per scene unit.
+        Focal length in pixels, along x and y, > 0. For an orthographic camera: pixels per scene unit.
     center : (float, float)
-        Where the optical axis meets the image, in pixels from the centre of the upper left one.
+        The point where the optical axis meets the image, in pixels from the centre of the upper left pixel.
     orthographic : bool
         Whether all rays are parallel.
 
     Raises
     ------
     ArgumentError
-        `world_to_view` scales, shears or has numbers that are not finite, or `focal` or `center` is out of range.
+        If `world_to_view` scales, shears or has numbers that are not finite, or `focal` or `center` is out of range.
     """
 
     world_to_view: Array
@@ -77,26 +77,26 @@ class Camera:
         fov_axis: FovAxis = "x",
         axes: Axes = "opengl",
     ) -> Camera:
-        """Make a camera in perspective from its place in the world and its field of view; pixels are square.
+        """Make a perspective camera with square pixels from its position in the world and its field of view.
 
         Parameters
         ----------
         camera_to_world : (4, 4) array
-            Turns a column (x, y, z, 1) of the camera's space into world space, without scale.
+            The matrix from columns (x, y, z, 1) of the camera's space to world space, without scale.
         fov_degrees : float
             The angle between the image's opposite edges, 0 < `fov_degrees` < 180.
         shape : (int, int)
             (height, width) of the image in pixels.
         fov_axis : {"x", "y", "smaller", "larger"}
-            Along which of the image's sides the field of view is measured.
+            The side of the image along which the field of view is measured.
         axes : {"opengl", "mitsuba", "renderman", "opencv"}
-            Which way the camera's x, y and z point in the image: right, up, backward (OpenGL, Blender, glTF, USD);
+            The directions of the camera's x, y and z in the image: right, up, backward (OpenGL, Blender, glTF, USD);
             left, up, forward (Mitsuba); right, up, forward (RenderMan, pbrt); right, down, forward (OpenCV).
 
         Raises
         ------
         ArgumentError
-            An argument is out of range.
+            If an argument is out of range.
         """
         height, width = _checked_shape("Camera.from_fov(shape)", shape)
         sides = {"x": width, "y": height, "smaller": min(shape), "larger": max(shape)}
@@ -118,14 +118,15 @@ class Camera:
     ) -> Camera:
         """Make a camera from the attributes ``worldToCamera`` and ``worldToNDC`` of an OpenEXR file.
 
-        The matrices are as in the file: a row (x, y, z, 1) of world space times one is a point in the camera's space or
-        in normalised device coordinates (NDC), which are yet to be divided by w. By OpenEXR's definition the camera's x
-        points to the right, y up and z forward, and NDC count from (0, 0) in the upper left corner of the display
-        window to (1, 1). Renderers differ in this, and the numbers tell how:
+        The matrices are as in the file: a row (x, y, z, 1) of world space times a matrix gives a point in the camera's
+        space, or in normalised device coordinates (NDC) before the division by w. By OpenEXR's definition the camera's
+        x points to the right, y up and z forward, and NDC go from (0, 0) in the upper left corner of the display window
+        to (1, 1). Renderers use other conventions, too, which this method recognises by the numbers:
 
-        - NDC count from -1 to 1 if the optical axis is nearer to their (0, 0) than to (0.5, 0.5) (Arnold, RenderMan,
-          Mantra). Their x and y may point either way.
-        - NDC from 0 to 1 with one unit along both sides of an image that is not square span its smaller side (pbrt).
+        - NDC go from -1 to 1 if the optical axis is nearer to their (0, 0) than to (0.5, 0.5) (Arnold, RenderMan,
+          Mantra). Their x and y may point in either direction.
+        - NDC from 0 to 1 that have the same unit along both sides of an image that is not square span the smaller side
+          (pbrt).
         - Matrices may be transposed (pbrt).
         - A camera looks along -z if w is positive there and its matrix does not mirror (OpenGL's). If it does mirror,
           the camera looks along z, and w is negative in front of it (Mantra).
@@ -139,12 +140,12 @@ class Camera:
         Raises
         ------
         ArgumentError
-            The matrices are not those of one camera in perspective or of an orthographic one, or its optical axis is
-            too far from the middle of the image to tell how NDC count.
+            If the matrices do not belong to one perspective or orthographic camera, or its optical axis is too far
+            from the middle of the image to find the range of NDC.
 
         Notes
         -----
-        Headers hold single precision: a camera at 5e5 is placed to within some hundredths of a unit.
+        Headers have single precision: the position of a camera at 5e5 is exact to some hundredths of a unit.
 
         References
         ----------
@@ -154,41 +155,41 @@ class Camera:
         return cls(**projection_of(world_to_camera, world_to_ndc, shape)._asdict())
 
     def cropped(self, x: int, y: int) -> Camera:
-        """The same camera for a part of its image, a data window, whose upper left pixel is (`x`, `y`) of the whole."""
+        """Return the camera for a part of its image, whose upper left pixel is (`x`, `y`) of the whole image."""
         return replace(self, center=(self.center[0] - x, self.center[1] - y))
 
     def to_view(self, points: npt.ArrayLike) -> Array:
-        """Turn points (..., 3) of world space into view space."""
+        """Transform points (..., 3) from world space to view space."""
         view: Array = np.asarray(points, np.float64) @ self.world_to_view[:3, :3].T + self.world_to_view[:3, 3]
         return view
 
     def to_world(self, view: npt.ArrayLike) -> Array:
-        """Turn points (..., 3) of view space into world space."""
+        """Transform points (..., 3) from view space to world space."""
         view_to_world = inverse(self.world_to_view)
         points: Array = np.asarray(view, np.float64) @ view_to_world[:3, :3].T + view_to_world[:3, 3]
         return points
 
     def project(self, points: npt.ArrayLike) -> tuple[Array, Array]:
-        """Find where the camera sees points (..., 3) of the world: pixels (..., 2) (x, y), and depth (...).
+        """Return the pixels (..., 2) (x, y) and the depth (...) of points (..., 3) of the world.
 
-        Pixels are NaN where the depth is not above 0: the point is behind the camera.
+        Pixels are NaN where the depth is not above 0, because the point is behind the camera.
         """
         view = self.to_view(points)
         return self._pixels(view), view[..., 2]
 
     def unproject(self, depth: npt.ArrayLike) -> Array:
-        """Find the points (H, W, 3) of the world at a depth (H, W) in pixel centres; NaN where it is not finite."""
+        """Return the points (H, W, 3) of the world with a depth (H, W) at pixel centres; NaN where it is not finite."""
         depth = np.asarray(depth, np.float64)
         depth = np.where(np.isfinite(depth), depth, math.nan)[..., None]
         rays = self.rays((depth.shape[0], depth.shape[1]))
         return self.to_world(np.concatenate([rays[..., :2] * (1.0 if self.orthographic else depth), depth], axis=-1))
 
     def depth_at(self, points: npt.ArrayLike) -> Array:
-        """Compute the depth (...) of points (..., 3) of the world."""
+        """Return the depth (...) of points (..., 3) of the world."""
         return self.to_view(points)[..., 2]
 
     def depth_of(self, distance: npt.ArrayLike) -> Array:
-        """Turn distances (H, W) along the rays through pixel centres into depths (H, W)."""
+        """Return the depths (H, W) for distances (H, W) along the rays through pixel centres."""
         distance = np.asarray(distance, np.float64)
         if self.orthographic:
             return distance
@@ -197,13 +198,13 @@ class Camera:
         return depth
 
     def rays(self, shape: tuple[int, int]) -> Array:
-        """Find the points (H, W, 3) of view space that have depth 1 at the pixel centres of a (height, width) image."""
+        """Return the points (H, W, 3) of view space with depth 1 at the pixel centres of a (height, width) image."""
         y, x = np.indices(shape, np.float64)
         (focal_x, focal_y), (center_x, center_y) = self.focal, self.center
         return np.stack([(x - center_x) / focal_x, (y - center_y) / focal_y, np.ones(shape)], axis=-1)
 
     def _pixels(self, view: Array) -> Array:
-        """Where points (..., 3) of view space are seen, (..., 2); NaN behind the camera."""
+        """Return the pixels (..., 2) of points (..., 3) of view space; NaN behind the camera."""
         depth = np.where(view[..., 2:] > 0.0, view[..., 2:], math.nan)
         pixels: Array = view[..., :2] * self.focal / (np.sign(depth) if self.orthographic else depth) + self.center
         return pixels
@@ -212,31 +213,31 @@ class Camera:
 def motion_from_cameras(
     camera: Camera, previous: Camera, *, depth: npt.ArrayLike | None = None, position: npt.ArrayLike | None = None
 ) -> npt.NDArray[np.float32]:
-    """Compute the motion of still geometry from the cameras of this frame and the previous one.
+    """Compute the motion of static geometry from the cameras of this frame and the previous one.
 
-    Give the camera of the next frame as `previous` for the motion to the next frame.
+    For the motion to the next frame, give the camera of the next frame as `previous`.
 
     Parameters
     ----------
     camera, previous : Camera
-        Those of this frame and of the previous one, without sub-pixel jitter.
+        The cameras of this frame and of the previous one, without sub-pixel jitter.
     depth : (H, W) array, optional
         Depth along the camera's axis, at pixel centres. Where it is not finite or not above 0, nothing was hit.
     position : (H, W, 3) array, optional
-        World-space positions, which may lie anywhere in their pixels: the jitter of a frame is not in its motion. Where
-        one is not finite, nothing was hit. Beside `depth`, which then only says where nothing was hit.
+        World-space positions, anywhere in their pixels: the jitter of a frame is not in its motion. Where one is not
+        finite, nothing was hit. If `depth` is also given, it only says where nothing was hit.
 
     Returns
     -------
     (H, W, 3) float32
         Previous minus current position in pixels, x and y, and previous minus current depth. Where nothing was hit, it
-        is the motion of a point infinitely far away: that of the rotation alone, and 0 in the third component; all 0
-        for an orthographic camera. NaN, a pixel without history, where the previous camera had the point behind it.
+        is the motion of a point infinitely far away: the motion by the rotation only, and 0 in the third component; all
+        0 for an orthographic camera. It is NaN, which means no history, where the point was behind the previous camera.
 
     Raises
     ------
     ArgumentError
-        Neither `depth` nor `position` is given, or one has another shape.
+        If neither `depth` nor `position` is given, or one has another shape.
 
     Examples
     --------
@@ -266,8 +267,8 @@ def motion_from_cameras(
 
 
 def _motion_at_infinity(camera: Camera, previous: Camera, rays: Array) -> Array:
-    """The motion (N, 3) of points infinitely far away along `rays` (N, 3) of the camera's view space."""
-    if camera.orthographic or previous.orthographic:  # all rays go one way: the background has no place in the image
+    """Return the motion (N, 3) of points infinitely far away along `rays` (N, 3) of the camera's view space."""
+    if camera.orthographic or previous.orthographic:  # all rays are parallel: the background has no position
         return np.zeros_like(rays)
     rotation = previous.world_to_view[:3, :3] @ np.linalg.inv(camera.world_to_view[:3, :3])
     motion = previous._pixels(rays @ rotation.T) - camera._pixels(rays)
@@ -275,14 +276,14 @@ def _motion_at_infinity(camera: Camera, previous: Camera, rays: Array) -> Array:
 
 
 def view_axes(argument: str, axes: str) -> Array:
-    """The (4, 4) matrix from a camera's space whose `axes` have this name to view space."""
+    """Return the (4, 4) matrix to view space from a camera's space whose `axes` have this name."""
     if axes not in tuple(AXES):
         raise ArgumentError(argument, f"one of {', '.join(AXES)}", shown(axes))
     return np.diag((*AXES[axes], 1.0))
 
 
 def _image(name: str, value: npt.ArrayLike, rest: tuple[int, ...], shape: tuple[int, ...] | None = None) -> Array:
-    """An argument of `motion_from_cameras` as an array of shape (H, W, *rest), or (*shape, *rest) if that is given."""
+    """Return an argument of `motion_from_cameras` as an array of shape (H, W, *rest), or (*shape, *rest) if given."""
     array = np.asarray(value, np.float64)
     fits = array.ndim == 2 + len(rest) and array.shape[2:] == rest and shape in (None, array.shape[:2])
     if not fits:
@@ -292,7 +293,7 @@ def _image(name: str, value: npt.ArrayLike, rest: tuple[int, ...], shape: tuple[
 
 
 def _checked_shape(argument: str, shape: tuple[int, int]) -> tuple[int, int]:
-    """(height, width) if both are there and above 0."""
+    """Return (height, width); raise `ArgumentError` unless both are there and above 0."""
     if len(shape) != 2 or min(shape) < 1:
         raise ArgumentError(argument, "(height, width) in pixels", shown(shape))
     return shape

@@ -1,4 +1,4 @@
-"""Chunks of a shot that different processes denoise; each filters some frames before its own, for the history."""
+"""Divides a shot into chunks that different processes can denoise; each chunk also filters some earlier frames."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from svgf_cl.job import Chunk, Done, Job, run
 from svgf_cl.scheduling import scheduled
 from svgf_cl.shot_walk import Look
 
-# Frames that are filtered before the first one that is written. With so many, the picture at a join differs from that
-# of an uncut shot by an eighth at most of what changes from one frame to the next anyway, where rays are jittered
-# (docs/farm.md has the table).
+# Frames that are filtered before the first one that is written. With this many, the picture at a join differs from that
+# of an undivided shot by at most an eighth of the usual change between two frames, if rays are jittered (docs/farm.md
+# has the table).
 WARM_UP = 32
-# Frames of a chunk on a cluster: with `WARM_UP` more, half as much work again as for the shot in one piece.
+# Frames of a chunk on a cluster: with `WARM_UP` more, the work is 1.5 times that for the shot in one piece.
 CHUNK = 64
 
 
 def cut(job: Job, written: range, size: int, warm_up: int) -> list[Chunk]:
-    """Divide the frames to write into chunks of this length.
+    """Divide the frames to write into chunks of `size` frames.
 
-    Each filters `warm_up` more before them, and as many behind them as the job looks ahead, as far as there are any
-    between two gaps: history ends at a gap.
+    Each chunk also filters `warm_up` frames before its own, and as many frames after them as the job looks ahead, but
+    none beyond a gap, because history ends there.
     """
     gaps = after_gaps(job.paths)
     begins = [index for index, path in enumerate(job.paths) if path in gaps]
@@ -47,24 +47,24 @@ def denoise_on_cluster(address: str, job: Job, chunks: list[Chunk], look: Look |
     Parameters
     ----------
     address : str
-        Of the scheduler.
+        The scheduler's address.
     job : Job
-        Its files must be the same for all machines.
+        Its files must be the same on all machines.
     chunks : list of Chunk
     look : callable, optional
-        As of `job.run`, called on the workers.
+        As in `job.run`, but called on the workers.
 
     Yields
     ------
     Done
-        Of all frames in order; those of a chunk when all of it is done.
+        For all frames in order; those of a chunk come when the whole chunk is done.
 
     Raises
     ------
     SchedulerError
-        As of `scheduled`.
+        As in `scheduled`.
     SvgfError
-        As of `job.run`; files and devices are named with the worker.
+        As in `job.run`; errors about files and devices name the worker.
     """
     with scheduled(address, library_version) as run_on:
         for frames in run_on(partial(_on_worker, look), absolute(job), chunks):
@@ -72,7 +72,7 @@ def denoise_on_cluster(address: str, job: Job, chunks: list[Chunk], look: Look |
 
 
 def absolute(job: Job) -> Job:
-    """The same job for a process that runs in another folder."""
+    """Return the job with absolute paths, for a process in another folder."""
     separate = {
         field: {number: path.absolute() for number, path in files.items()}
         for field, files in job.separate.paths.items()
@@ -86,7 +86,7 @@ def absolute(job: Job) -> Job:
 
 
 def _on_worker(look: Look | None, job: Job, chunk: Chunk) -> list[Done]:
-    """One task; errors that depend on the machine name it."""
+    """Run one task; errors that depend on the machine name it."""
     try:
         return list(run(job, chunk, look))
     except (DeviceError, FileError) as error:

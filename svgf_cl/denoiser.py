@@ -1,4 +1,4 @@
-"""`Denoiser`: checks what it is given, and runs a filter's plan frame by frame."""
+"""`Denoiser`: denoises a sequence of frames. It checks its arguments, and runs a filter's plan for each frame."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from svgf_cl.device.arguments import (
     layout_of,
 )
 from svgf_cl.device.array_checks import check_out
-from svgf_cl.device.events import pending
+from svgf_cl.device.events import pending, times
 from svgf_cl.device.gl_objects import acquired
 from svgf_cl.device.opencl_errors import allocate, opencl_errors
 from svgf_cl.device.process import check_process, is_forked
@@ -40,41 +40,42 @@ from svgf_cl.frame import ALPHA, Frame, Shape, extent
 from svgf_cl.interchange import UserArray
 from svgf_cl.plan import Plan, Workplace
 
-# What to do after an error of the device.
-NOT_BEGUN = "the frame was not begun, so the next one goes on from the last; if this stays, make a new Denoiser"
-BROKEN_OFF = "the past is forgotten, as by reset, so the next frame begins anew; if this stays, make a new Denoiser"
-UNCHANGED = "nothing was changed; if this stays, make a new Denoiser"
+# Advice after an error of the device.
+NOT_BEGUN = "the frame was not started, so the history is unchanged; if this happens again, make a new Denoiser"
+BROKEN_OFF = "the history is discarded, as by reset; if this happens again, make a new Denoiser"
+UNCHANGED = "nothing was changed; if this happens again, make a new Denoiser"
 
 
 class Denoiser:
-    """Denoises a sequence of frames of one size, one call a frame.
+    """Denoises a sequence of frames of one size, one frame for each call.
 
-    Threads may share one: a call waits for that of another thread to end. Denoisers do not disturb each other. It may
-    stand in a ``with``, at whose end it is closed. It does not survive a fork: a process that was forked off gets a
-    `DeviceError`, so start processes with multiprocessing's "spawn", and make a denoiser in each.
+    Several threads may use one denoiser: each call waits until another thread's call has ended. Several denoisers do
+    not affect each other. After a ``with`` block a denoiser is closed. It does not work after a fork: a forked process
+    gets a `DeviceError`. So start processes with multiprocessing's "spawn", and make a denoiser in each.
 
     Parameters
     ----------
     shape : (int, int)
         (height, width) in pixels, each >= 1.
     settings : Filter, optional
-        Which filter, and its parameters: `Kalman`, the default, `Settings` for SVGF, `Eaw`.
+        The filter and its parameters, such as `Kalman` (the default), `Settings` (SVGF) or `Eaw`.
     queue : pyopencl.CommandQueue, optional
-        In-order queue to work on; by default one on the fastest working device
+        The queue to use, which must run commands in order; by default a new one on the fastest working device
         (`svgf_cl.device.devices.default_queue`).
     keep_stages : bool
-        Copy every stage aside, so that `stage` can read all of them; by default some make room for later ones.
+        Copy every stage, so that `stage` can read all of them; by default later stages reuse the memory of some.
     tuning : Tuning, optional
-        How to cut the work on this device; by default what ``svgf-cl tune`` found best, else what suits most.
+        Settings for the speed of this device; by default the best ones that ``svgf-cl tune`` found, else those for
+        most devices of its kind.
     after_pass : callable, optional
-        Is told the label and the event of every pass as soon as it is on the queue, to watch or time them one by one.
-        What it raises breaks off the frame. It may not call the denoiser.
+        A function that gets the label and the event of every pass as soon as the pass is on the queue, to watch or
+        time single passes. If it raises an error, the frame is not completed. It must not call the denoiser.
 
     Raises
     ------
     SvgfError
-        If `shape` is no image, `queue` is not in order or dead, no OpenCL device works (`DeviceError`), or `tuning` is
-        not for the device.
+        If `shape` is not the shape of an image, `queue` is dead or may run commands out of order, no OpenCL device
+        works (`DeviceError`), or the device cannot use `tuning`.
 
     Examples
     --------
@@ -119,12 +120,12 @@ class Denoiser:
 
     @property
     def queue(self) -> cl.CommandQueue:
-        """The queue that it works on."""
+        """The queue that the denoiser uses."""
         return self._queue
 
     @property
     def tuning(self) -> Tuning:
-        """How the work is cut on this device."""
+        """The settings for the speed of this device."""
         return self._tuning
 
     def denoise(self, frame: Frame, *, out: Any = None, wait_for: Sequence[cl.Event] = ()) -> Any:
@@ -133,29 +134,29 @@ class Denoiser:
         Parameters
         ----------
         frame : Frame
-            Every field of this denoiser's shape. The set of fields must stay the same until `reset`.
+            Every field has this denoiser's shape. The set of fields must stay the same until `reset`.
         out : (H, W, 3) float32 C-contiguous ndarray or Array, optional
-            Where to put the result; (H, W, 4) where `color` has alpha. An Array may have strides and an offset.
+            The array for the result; (H, W, 4) if `color` has alpha. An Array may have strides and an offset.
         wait_for : sequence of pyopencl.Event
-            What must be complete before the frame's Arrays are read, beside what the Arrays themselves know of.
+            Events that must complete before the frame's Arrays are read, in addition to the Arrays' own events.
 
         Returns
         -------
-        (H, W, 3) float32, or (H, W, 4) where `color` has alpha
-            Linear HDR radiance, and the alpha of `color` as it was: `out` if given; else an Array, perhaps still being
-            computed on `queue`, if every field is an Array; else an ndarray.
+        (H, W, 3) float32, or (H, W, 4) if `color` has alpha
+            Linear HDR radiance, and the alpha of `color` unchanged. It is `out` if given. Else it is an Array if every
+            field is an Array, and `queue` may still be computing it. Else it is an ndarray.
 
         Raises
         ------
         FrameError
-            If a field is missing, of another shape or type, on another context, or in memory that the device cannot
-            use (SVM, OpenGL). The call counts as not made.
+            If a field is missing, has another shape or type, belongs to another context, or is in memory that the
+            device cannot use (SVM, OpenGL). The denoiser stays as before the call.
         ArgumentError
-            If the set of fields changed, if `out` is of another shape or type, if as an Array it is the memory of a
-            field, or if an event failed. The call counts as not made.
+            If the set of fields has changed, `out` has another shape or type, `out` is an Array in the memory of a
+            field, or an event failed. The denoiser stays as before the call.
         DeviceError
-            If the device has no room, or cannot build a kernel: the call counts as not made. If it breaks off in the
-            middle of the frame: the past is forgotten, as by `reset`.
+            If the device does not have enough memory, or cannot build a kernel: the denoiser stays as before the call.
+            If an error occurs in the middle of the frame, the history is discarded, as by `reset`.
         """
         if not isinstance(frame, Frame):
             raise SvgfError(f"denoise(frame): expected a Frame, got {type(frame).__name__}")
@@ -176,12 +177,12 @@ class Denoiser:
         return result
 
     def warm_up(self, inputs: Inputs) -> None:
-        """Build kernels and take memory for frames that supply `inputs`, so that the first is not slower.
+        """Build kernels and allocate memory for frames with these fields, so that the first frame is not slower.
 
         Raises
         ------
         SvgfError
-            If `inputs` are none, or not those of the sequence that has begun; `DeviceError` as by `denoise`.
+            If `inputs` is no `Inputs`, or differs from the current sequence; `DeviceError` as in `denoise`.
         """
         check_inputs(inputs)
         with self._in_turn(), self._opencl_errors("warm_up", UNCHANGED):
@@ -189,24 +190,26 @@ class Denoiser:
             self._workplace.queue.finish()
 
     def reset(self) -> None:
-        """Forget the past, but keep kernels and memory: for a camera cut, or to send frames with other fields."""
+        """Discard the history, but keep kernels and memory: for a camera cut, or before frames with other fields."""
         with self._in_turn():
             self._cut()
 
     def update(self, settings: Filter) -> bool:
-        """Go on with other settings, or with another filter.
+        """Continue with other settings, or with another filter.
 
-        The past is kept, unless it is another filter's or stored in another way (half_guides, half_history): then the
-        next frame begins anew. Where kernels or passes change, both the old memory and the new are held for a moment.
+        The history is kept, unless the filter changes or stores it in another way (half_guides, half_history); then the
+        next frame has no history. If kernels or passes change, the old and the new memory exist for a moment at the
+        same time.
 
         Returns
         -------
         bool
-            Whether kernels were built or memory taken anew, which takes longer than a frame; numbers change without.
+            Whether kernels were built or memory was allocated, which takes longer than a frame. Settings that only
+            change numbers need neither.
         """
         check_filter(settings)
         with self._in_turn(), self._opencl_errors("update", UNCHANGED):
-            layout_of(self._shape, self._tuning, settings)  # whose buffers may be larger
+            layout_of(self._shape, self._tuning, settings)  # the new filter's buffers may be larger
             rebuilt = False
             if self._plan and self._inputs:
                 pipeline = settings.pipeline(self._inputs)
@@ -219,7 +222,7 @@ class Denoiser:
             return rebuilt
 
     def resize(self, shape: Shape) -> None:
-        """Go on with frames of another (height, width): a cut, but with the kernels that are built already."""
+        """Continue with frames of another (height, width), as after a cut, but with the kernels built so far."""
         shape = check_shape(shape)
         with self._in_turn() as arrays:
             layout = layout_of(shape, self._tuning, self._settings)
@@ -229,8 +232,8 @@ class Denoiser:
             self._cut()
 
     def close(self) -> None:
-        """Give memory back; no call but this one works afterwards. Results still being computed are completed."""
-        if not is_forked():  # what was the other process's goes with this one
+        """Free the memory; afterwards only this call works. Results that are still being computed are completed."""
+        if not is_forked():  # in a forked process the memory belongs to the other process
             with self._lock:
                 self._plan, self._arrays, self._events = None, None, ()
 
@@ -250,27 +253,23 @@ class Denoiser:
 
     @property
     def events(self) -> tuple[tuple[str, cl.Event], ...]:
-        """Label and event of every pass of the last frame, and of what is done to Arrays around them, in order."""
+        """Label and event of every pass of the last frame, and of the copies of Arrays before and after, in order."""
         return self._events
 
     def profile(self) -> dict[str, float]:
-        """Milliseconds on the device of each of `events`, in order."""
-        queue = self._workplace.queue
+        """Return the milliseconds on the device of each of `events`, in order."""
         with self._in_turn(), self._opencl_errors("profile", UNCHANGED):
-            if not queue.properties & cl.command_queue_properties.PROFILING_ENABLE:
-                raise SvgfError("profile(): the queue was made without PROFILING_ENABLE")
-            queue.finish()
-            return {name: 1e-6 * (event.profile.end - event.profile.start) for name, event in self._events}
+            return dict(times(self._workplace.queue, self._events))
 
     @property
     def stages(self) -> list[str]:
-        """Names that `stage` understands; none before the first frame, nor from a cut or rebuild to the next one."""
+        """Names for `stage`; empty before the first frame, and after a cut or rebuild until the next frame."""
         check_process()
         with self._lock:
             return list(self._plan.stages) if self._plan and self._events else []
 
     def stage(self, name: str) -> np.ndarray:
-        """An intermediate result of the last frame, for debugging.
+        """Return an intermediate result of the last frame, for debugging.
 
         Parameters
         ----------
@@ -284,13 +283,13 @@ class Denoiser:
         Raises
         ------
         SvgfError
-            If there is no such stage, or its memory went to a later stage of the frame.
+            If there is no such stage, or a later stage of the frame has overwritten it.
         """
         with self._in_turn(), self._opencl_errors("stage", UNCHANGED):
             return self._plan_with(name).read(name)
 
     def raw_stage(self, name: str) -> np.ndarray:
-        """The whole buffer that holds a stage of the last frame, for debugging kernels.
+        """Return the whole buffer of a stage of the last frame, for debugging kernels.
 
         Parameters
         ----------
@@ -300,27 +299,29 @@ class Denoiser:
         Returns
         -------
         (n,) of the type of the stage's elements
-            Plane after plane, rows with their padding, halo included.
+            Plane after plane, with the padding of rows and the halo.
         """
         with self._in_turn(), self._opencl_errors("raw_stage", UNCHANGED):
             return self._plan_with(name).raw(name)
 
     @property
     def nbytes(self) -> int:
-        """Device memory held for planes, in bytes; 0 before the first frame or `warm_up`."""
+        """Device memory for planes, in bytes; 0 before the first frame or `warm_up`."""
         check_process()
         with self._lock:
             return self._plan.nbytes if self._plan else 0
 
     @contextmanager
     def _in_turn(self) -> Iterator[UserArrays]:
-        """Around what touches the device: one thread at a time, in the process that made it, before it is closed."""
+        """Use the device in a ``with`` block: one thread at a time, not after a fork, and not after `close`."""
         check_process()
         with self._lock:
             if self._arrays is None:
                 raise SvgfError("Denoiser: expected one that is open, got one after close() or the end of its 'with'")
             if self._is_running:
-                raise SvgfError("Denoiser: expected no call from after_pass, for the frame is not complete; got one")
+                raise SvgfError(
+                    "Denoiser: expected no call from after_pass, because the frame is not complete; got one"
+                )
             yield self._arrays
 
     @contextmanager
@@ -329,20 +330,20 @@ class Denoiser:
             yield
 
     def _ready(self, inputs: Inputs, argument: str) -> Plan:
-        """The plan for these inputs; a new one where they changed at a cut."""
+        """Return the plan for these inputs; a new one if they changed at a cut."""
         if self._plan and inputs == self._inputs:
             return self._plan
         if not self._is_cut:
             raise ArgumentError(argument, f"the fields {self._inputs} as before, or a call of reset", str(inputs))
-        self._plan = None  # gives its memory back first
+        self._plan = None  # frees its memory first
         if self._arrays:
             self._arrays.drop_copies()
         return Plan(self._settings.pipeline(inputs), self._workplace)
 
     def _rebuild(self, old: Plan, pipeline: Pipeline, *, same_filter: bool) -> None:
-        """Make another plan, which takes over the past where it can; until its first frame there is nothing to show."""
+        """Make another plan, which takes over the history if possible; it has no stages until its first frame."""
         if self._is_cut:
-            self._plan = None  # gives its memory back first
+            self._plan = None  # frees its memory first
         plan = Plan(pipeline, self._workplace)
         if not (same_filter and not self._is_cut and plan.inherit(old)):
             self._cut()
@@ -356,7 +357,7 @@ class Denoiser:
         result: UserArray,
         events: list[cl.Event],
     ) -> None:
-        """Run the passes; where they break off the past is forgotten, as half a frame is no history."""
+        """Run the passes; after an error the history is discarded, as half a frame is no history."""
         first = self._is_cut
         self._cut()
         queue = self._workplace.queue
@@ -371,7 +372,7 @@ class Denoiser:
                     done += arrays.copy(exchange.after)
             if isinstance(result, cl_array.Array):
                 result.add_event(done[-1][1])
-                queue.flush()  # whoever waits for that event on another queue must not wait for ever
+                queue.flush()  # else another queue might wait for that event forever
         self._is_cut, self._events = False, tuple(done)
 
     def _passes(self, plan: Plan, buffers: dict[str, cl.Buffer], first: bool) -> list[tuple[str, cl.Event]]:
@@ -383,7 +384,7 @@ class Denoiser:
             self._is_running = False
 
     def _plan_with(self, stage: str) -> Plan:
-        """The plan, if it has such a stage of a last frame."""
+        """Return the plan if it has this stage of the last frame; else raise `SvgfError`."""
         known = self.stages
         if self._plan is None or not isinstance(stage, str) or stage not in known:
             raise SvgfError(f"stage: expected one of {', '.join(known) or 'none before a frame'}; got {shown(stage)}")
@@ -393,7 +394,7 @@ class Denoiser:
         self._is_cut, self._events = True, ()
 
     def _result(self, frame: Frame) -> Any:
-        """A new array for the result, of the same kind as the frame's."""
+        """Return a new array for the result, of the same kind as the frame's."""
         shape = frame.picture_shape
         if all(isinstance(value, cl_array.Array) for value in frame.present().values()):
             nbytes = 4 * math.prod(shape)

@@ -1,4 +1,4 @@
-"""`Denoisers`: one denoiser for each light or guide of a frame, which share the memory of the device."""
+"""`Denoisers`: one denoiser for each light or guide of a frame; they share the memory of the device."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ class Denoisers:
     shape : (int, int)
         (height, width) in pixels.
     settings : Filter
-        For all alike.
+        The same for all.
     share : float
-        Of the device's memory for each: where a whole frame does not fit into it, it is denoised in tiles.
+        The share of the device's memory for each. If a whole frame does not fit into it, it is denoised in tiles.
     """
 
     def __init__(self, shape: Shape, settings: Filter, share: float = 1.0) -> None:
@@ -39,14 +39,14 @@ class Denoisers:
         return key in self._made
 
     def denoise(self, key: Hashable, frame: Frame) -> Picture:
-        """Denoise the next frame of the sequence called `key`; errors as of `Denoiser.denoise`."""
+        """Denoise the next frame of the sequence called `key`; errors as in `Denoiser.denoise`."""
         if key not in self._made:
             self._made[key] = self._new(frame)
         picture: Picture = self._made[key].denoise(frame)
         return picture
 
     def update(self, settings: Filter) -> None:
-        """Go on with other settings, as `Denoiser.update`; what is denoised in tiles begins anew."""
+        """Continue with other settings, as `Denoiser.update` does; sequences in tiles lose their history."""
         self._settings = settings
         for key, made in list(self._made.items()):
             if isinstance(made, TiledDenoiser):
@@ -60,7 +60,7 @@ class Denoisers:
         return key in self._made and name in self._made[key].stages
 
     def stage(self, key: Hashable, name: str) -> Picture:
-        """An intermediate result of the last frame called `key`; errors as of `Denoiser.stage`."""
+        """Return an intermediate result of the last frame called `key`; errors as in `Denoiser.stage`."""
         return self._made[key].stage(name)
 
     def reset(self) -> None:
@@ -69,7 +69,7 @@ class Denoisers:
             made.reset()
 
     def profile(self) -> dict[str, float]:
-        """Milliseconds on the device of each pass of the last frame, of all together."""
+        """Return the milliseconds on the device of each pass of the last frame, summed over all denoisers."""
         total: dict[str, float] = {}
         for made in self._made.values():
             for name, time in made.profile().items():

@@ -1,6 +1,6 @@
 """Errors for users. Every message says what was expected, what was found, and what to do next."""
 
-LONGEST_SHOWN = 80  # characters of a wrong value that a message repeats
+LONGEST_SHOWN = 80  # characters of a wrong value in a message
 
 
 class SvgfError(ValueError):
@@ -8,10 +8,10 @@ class SvgfError(ValueError):
 
 
 class FrameError(SvgfError):
-    """A frame's field is missing, of the wrong shape or of the wrong type."""
+    """A frame's field is missing, or has the wrong shape or type."""
 
     def __init__(self, field: str, expected: str, got: str) -> None:
-        super().__init__(field, expected, got)  # as they are: another process makes it anew from them
+        super().__init__(field, expected, got)  # unchanged, because another process makes the error again from them
         self.field = field
 
     def __str__(self) -> str:
@@ -19,7 +19,7 @@ class FrameError(SvgfError):
 
 
 class ArgumentError(SvgfError):
-    """An argument of a call is wrong that is not a field: the array for the result, or events to wait for."""
+    """An argument of a call that is no field is wrong, such as the array for the result, or events to wait for."""
 
     def __init__(self, argument: str, expected: str, got: str) -> None:
         super().__init__(argument, expected, got)
@@ -37,7 +37,7 @@ class DeviceError(SvgfError):
 
 
 class FileError(SvgfError):
-    """A file is missing, unreadable, cannot be written, or does not fit the others."""
+    """A file is missing, cannot be read or written, or does not match the others."""
 
 
 class SchedulerError(SvgfError):
@@ -45,19 +45,19 @@ class SchedulerError(SvgfError):
 
 
 def install_extra(extra: str) -> str:
-    """The command that installs what an optional part of svgf_cl needs, for a message; it works in any environment."""
+    """Return, for a message, the command that installs the packages of an extra; it works in any environment."""
     return f"pip install 'svgf-cl[{extra}]'"
 
 
 def one_line(message: object) -> str:
-    """`message` without its line breaks, because our errors are one line."""
+    """Return a message without line breaks, because our errors have one line."""
     return " ".join(str(message).split())
 
 
 def shown(value: object) -> str:
-    """A value for a message: on one line, shortened, and also if it has no text of its own."""
+    """Return a value as text for a message: on one line, and shortened. It works even if the value has no text."""
     try:
         text = one_line(repr(value))
-    except Exception:  # a whole number of 5000 digits, say
+    except Exception:  # for example a whole number of 5000 digits
         return f"one of type {type(value).__name__} that cannot be shown"
     return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}..."

@@ -1,4 +1,4 @@
-"""The version of the code of a process: two machines give the same bits only with the same code and libraries."""
+"""Computes the version of a process's code: machines give the same bits only with the same code and libraries."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ LIBRARIES = ("numpy", "OpenEXR", "pyopencl")
 
 
 def code_version(sources: Iterable[tuple[str, str]], libraries: Iterable[str]) -> str:
-    """SHA-256, in hexadecimal digits, of named texts and of the versions of installed libraries."""
+    """Return the SHA-256, in hexadecimal digits, of named texts and of the versions of installed libraries."""
     digest = hashlib.sha256()
     for name, text in (*sources, *((library, version(library)) for library in libraries)):
         digest.update(f"{len(name)} {len(text)} {name}{text}".encode())
@@ -22,7 +22,7 @@ def code_version(sources: Iterable[tuple[str, str]], libraries: Iterable[str]) -
 
 @functools.cache
 def library_version() -> str:
-    """Version of svgf_cl: of its sources, its kernels, and the libraries that it computes with."""
+    """Return the version of svgf_cl: of its sources, its kernels, and the libraries that affect its results."""
     modules = [(path.name, path.read_text(encoding="utf-8")) for path in sorted(Path(__file__).parent.rglob("*.py"))]
     entries = sorted(files("svgf_cl.kernels").iterdir(), key=lambda entry: entry.name)
     kernels = [(entry.name, entry.read_text(encoding="utf-8")) for entry in entries if ".cl" in entry.name]

@@ -15,7 +15,7 @@ LUMINANCE: tuple[float, float, float] = (0.2126, 0.7152, 0.0722)
 
 Shape = tuple[int, int]
 
-# Number of channels each field may have; 0 stands for a plain (H, W) array.
+# Possible numbers of channels of each field; 0 means an (H, W) array.
 CHANNELS: dict[str, tuple[int, ...]] = {
     "color": (3,),
     "albedo": (3,),
@@ -31,10 +31,10 @@ CHANNELS: dict[str, tuple[int, ...]] = {
     "roughness": (0,),
     "hit_distance": (2,),
 }
-# The fourth channel that `color` may have beside these: it goes to the result as it is.
+# The fourth channel that `color` may have in addition; the result has it unchanged.
 ALPHA = "color.alpha"
 REQUIRED = ("normal", "depth", "motion")
-# What the denoiser checks and leaves alone: renderers write it, and filters to come will want it.
+# Fields that the denoiser checks but does not use: renderers write them, and future filters will need them.
 CARRIED = ("diffuse", "specular", "roughness", "hit_distance")
 
 
@@ -42,14 +42,14 @@ CARRIED = ("diffuse", "specular", "roughness", "hit_distance")
 class Frame:
     """One noisy image with its G-buffer.
 
-    Every field is a `numpy.ndarray` or a `pyopencl.array.Array`, row 0 on top, x to the right, y down. `Frame.of`
-    takes arrays of other libraries too.
+    Every field is a `numpy.ndarray` or a `pyopencl.array.Array`, with row 0 at the top, x to the right and y down.
+    `Frame.of` accepts arrays of other libraries, too.
 
     Parameters
     ----------
     color : (H, W, 3) or (H, W, 4) float32, optional
-        Linear HDR radiance, scene-referred. May be left out where `direct` and `indirect` are both given. A fourth
-        channel is alpha: radiance is associated with it (premultiplied), and the result has it too, unchanged.
+        Linear HDR radiance, scene-referred. It may be left out if `direct` and `indirect` are both given. A fourth
+        channel is alpha: radiance is premultiplied by it (associated alpha), and the result has it unchanged.
     normal : (H, W, 3) float32
         World-space unit shading normal; 0 where nothing was hit.
     depth : (H, W) float32
@@ -62,13 +62,13 @@ class Frame:
     id : (H, W) uint32, optional
         Instance id; 0 where nothing was hit.
     emission : (H, W, 3) float32, optional
-        Directly visible emission (a lamp, the sky) inside `color`; it is passed through unfiltered.
+        Directly visible emission (a lamp, the sky), which `color` contains; it is not filtered.
     direct, indirect : (H, W, 3) float32, optional
-        Reflected radiance split in two signals that are filtered apart; both or neither.
+        Reflected radiance, split into two signals that are filtered separately; give both or neither. With them,
         ``color = direct + indirect + emission``, and `color` is not read.
     diffuse, specular : (H, W, 3) float32, optional
-        Reflected radiance split by the lobe of the first surface: ``color = diffuse + specular + emission``. The
-        denoiser does not read these and the next two; they are carried for filters to come.
+        Reflected radiance, split by the lobe of the first surface: ``color = diffuse + specular + emission``. The
+        denoiser does not use these and the next two fields; future filters will.
     roughness : (H, W) float32, optional
         Perceptual roughness of the first surface, 0 (mirror) to 1; 1 where nothing was hit.
     hit_distance : (H, W, 2) float32, optional
@@ -92,23 +92,23 @@ class Frame:
 
     @classmethod
     def of(cls, **fields: Any) -> Frame:
-        """A frame of arrays of any library.
+        """Make a frame from arrays of any library.
 
-        Nothing is copied, but numbers in lists.
+        Only numbers in lists are copied.
 
         Parameters
         ----------
         **fields
-            Fields by name. Each is an object with ``__dlpack__`` in memory that the CPU reads (PyTorch, JAX), or with
-            ``__array__``, nested lists of numbers, a pyopencl Array, or ``(buffer, shape)`` with a pyopencl Buffer
-            whose first elements, float32 (`id`: uint32) in C order, are the array. Fields of three channels may have a
-            fourth, as float4 has: it is left out, but for alpha of `color`. None stands for a field that is not there.
+            Fields by name. Each is an object with ``__dlpack__`` in memory that the CPU reads (PyTorch, JAX), an object
+            with ``__array__``, nested lists of numbers, a pyopencl Array, or ``(buffer, shape)`` with a pyopencl Buffer
+            that begins with the array's elements, float32 (`id`: uint32) in C order. Fields of three channels may have
+            a fourth, as in float4; it is left out, except for alpha of `color`. None means that a field is missing.
 
         Raises
         ------
         FrameError
-            If a value is none of these, or lies in memory of CUDA or of another GPU interface. Shapes and types are
-            checked by `Denoiser.denoise`.
+            If a value is none of these, or is in memory of CUDA or of another GPU interface. `Denoiser.denoise` checks
+            shapes and types.
 
         Examples
         --------
@@ -118,7 +118,7 @@ class Frame:
         return cls(**{name: without_fourth(name, value) for name, value in given.items()})
 
     def present(self) -> dict[str, Any]:
-        """The fields that were given, by name."""
+        """Return the fields that were given, by name."""
         return {name: value for name, value in vars(self).items() if value is not None}
 
     @property
@@ -133,7 +133,7 @@ class Frame:
 
     @property
     def has_alpha(self) -> bool:
-        """Whether `color` has alpha, so that the result has it too."""
+        """Whether `color` has alpha; then the result has it, too."""
         return self.color is not None and len(self.color.shape) == 3 and self.color.shape[2] == 4
 
     @property
@@ -142,19 +142,19 @@ class Frame:
         return (*self.shape, 4 if self.has_alpha else 3)
 
     def layer(self, name: str) -> Any:
-        """The array that filters use by this name: a field, `color` without its alpha, or alpha alone, (H, W)."""
+        """Return the array that filters use by this name: a field, `color` without alpha, or only alpha, (H, W)."""
         if name == ALPHA:
             return self.color[..., 3]
         return self.color[..., :3] if name == "color" and self.has_alpha else getattr(self, name)
 
     def check(self, shape: Shape) -> None:
-        """Raise `FrameError` unless every field is there, of this (height, width), and of a usable type."""
+        """Raise `FrameError` unless all needed fields are there, and all have this (height, width) and a right type."""
         self.check_presence()
         for name, value in self.present().items():
             check_field(name, value, shape)
 
     def check_presence(self) -> None:
-        """Raise `FrameError` where a required field, or one half of a pair, is missing."""
+        """Raise `FrameError` if a required field, or one of a pair, is missing."""
         for name in REQUIRED:
             if getattr(self, name) is None:
                 raise FrameError(name, "an array", "nothing")
@@ -180,18 +180,18 @@ def check_field(name: str, value: Any, shape: Shape) -> None:
 
 
 def element_type(name: str) -> type[np.float32] | type[np.uint32]:
-    """The type of the elements of a field as kernels read it."""
+    """Return the type of a field's elements as kernels read them."""
     return np.uint32 if name == "id" else np.float32
 
 
 def without_fourth(name: str, value: UserArray) -> UserArray:
-    """A view of the first three channels, if an array has a fourth that its field does not have."""
+    """Return an array without a fourth channel that its field does not have."""
     padded = CHANNELS.get(name) == (3,) and name != "color" and len(value.shape) == 3 and value.shape[2] == 4
     return value[..., :3] if padded else value
 
 
 def check_ids(value: np.ndarray) -> None:
-    """Raise `FrameError` if 32 bits cannot hold an id, so that two ids stay different. Negative ids are allowed."""
+    """Raise `FrameError` if an id does not fit into 32 bits: two might become the same. Negative ids are allowed."""
     for extreme in (int(value.min(initial=0)), int(value.max(initial=0))):
         if not -(2**31) <= extreme < 2**32:
             raise FrameError("id", f"ids in 0..{2**32 - 1}, which fit into 32 bits", str(extreme))
@@ -204,13 +204,13 @@ def check_array(name: str, value: Any) -> None:
 
 
 def wrong(name: str, expected: str, got: str) -> FrameError | ArgumentError:
-    """The error of an array of the user's: `FrameError` for a frame's field, else `ArgumentError`."""
+    """Return the error for an array of the user: `FrameError` for a frame's field, else `ArgumentError`."""
     if name in (*CHANNELS, ALPHA):
         return FrameError(name, expected, got)
     return ArgumentError(f"denoise({name})", expected, got)
 
 
 def extent(shape: Shape) -> str:
-    """Write (height, width) as people do: 640x360."""
+    """Return (height, width) as text, width first: 640x360."""
     height, width = shape
     return f"{width}x{height}"

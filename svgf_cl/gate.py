@@ -1,4 +1,4 @@
-"""Checks that accept or reject a change, as a JUnit XML file for CI services."""
+"""Checks of values against limits, and their results as a JUnit XML file for CI services."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from xml.etree import ElementTree
 
 from svgf_cl.io.atomic import written_whole
 
-# What XML 1.0 cannot hold, not even escaped.
+# Characters that XML 1.0 does not allow, not even escaped.
 NO_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 @dataclass(frozen=True)
 class Check:
-    """One figure that was compared with a limit.
+    """One value that was compared with a limit.
 
     Parameters
     ----------
     name : str
-        What was checked.
+        The name of the value.
     group : str
-        What it belongs to, such as a device; JUnit calls it the class.
+        The thing that it belongs to, such as a device; JUnit calls it the class.
     complaint : str
-        What is wrong; empty where the check passed.
+        What is wrong; empty if the check passed.
     """
 
     name: str
@@ -34,12 +34,12 @@ class Check:
 
 
 def write_junit(path: Path, suite_name: str, checks: Sequence[Check]) -> None:
-    """Write checks as a JUnit file with one suite, whole or not at all.
+    """Write checks as a JUnit file with one suite, completely or not at all.
 
     Raises
     ------
     FileError
-        Where the file cannot be written.
+        If the file cannot be written.
     """
     failures = sum(bool(check.complaint) for check in checks)
     counts = {"tests": str(len(checks)), "failures": str(failures), "errors": "0"}
@@ -52,7 +52,7 @@ def write_junit(path: Path, suite_name: str, checks: Sequence[Check]) -> None:
 
 
 def case_element(check: Check) -> ElementTree.Element:
-    """Make the element of one check; services show the failure's message, its text, or both."""
+    """Return the element of one check; CI services show the failure's message, its text, or both."""
     case = ElementTree.Element("testcase", {"classname": xml_text(check.group), "name": xml_text(check.name)})
     if check.complaint:
         complaint = xml_text(check.complaint)
@@ -61,5 +61,5 @@ def case_element(check: Check) -> ElementTree.Element:
 
 
 def xml_text(text: str) -> str:
-    """Escape characters that XML does not allow, as Python does: names may come from files."""
+    """Escape characters that XML does not allow, as Python does; names of files may contain them."""
     return NO_XML.sub(lambda match: ascii(match[0])[1:-1], text)

@@ -1,4 +1,4 @@
-"""Arrays of other libraries for the denoiser, without a copy if their memory is that of the host or of OpenCL."""
+"""Makes arrays of other libraries usable for the denoiser, without a copy."""
 
 from __future__ import annotations
 
@@ -15,29 +15,29 @@ UserArray = np.ndarray | cl_array.Array
 EXPECTED = "an array in the host's memory (with __array__ or __dlpack__), a pyopencl Array, or (pyopencl Buffer, shape)"
 FROM_GPU = "memory of the host or of OpenCL: copy it to a numpy.ndarray (.cpu(), .get()) or to a pyopencl Array"
 
-# Devices by their numbers in dlpack.h. The CPU reads the first, and what CUDA and ROCm pin for it.
+# Devices by their numbers in dlpack.h. The host reads the CPU's memory, and memory that CUDA and ROCm have pinned.
 READ_BY_HOST = (1, 3, 11)
 DEVICES = {2: "CUDA", 4: "OpenCL", 7: "Vulkan", 8: "Metal", 10: "ROCm", 13: "CUDA (managed)", 14: "oneAPI"}
 
 
 def as_array(field: str, value: Any, dtype: type[np.generic]) -> UserArray:
-    """A field's value as a numpy.ndarray or a pyopencl Array.
+    """Return a field's value as a numpy.ndarray or a pyopencl Array.
 
     Parameters
     ----------
     field : str
-        For the error.
+        The field's name, for the error.
     value : object
-        A numpy.ndarray or pyopencl Array, which is returned as it is; an object with ``__dlpack__`` or ``__array__``,
-        or nested lists of numbers; or ``(buffer, shape)``, a `pyopencl.Buffer` whose first elements in C order are
-        the array.
+        A numpy.ndarray or pyopencl Array, which is returned unchanged; an object with ``__dlpack__`` or ``__array__``;
+        nested lists of numbers; or ``(buffer, shape)`` with a `pyopencl.Buffer` that begins with the array's elements
+        in C order.
     dtype : type
-        Of the elements of a buffer.
+        The type of a buffer's elements.
 
     Raises
     ------
     FrameError
-        If it is none of these, or in the memory of a GPU but no OpenCL buffer.
+        If it is none of these, or is in a GPU's memory but no OpenCL buffer.
     """
     if isinstance(value, UserArray):
         return value
@@ -51,7 +51,7 @@ def as_array(field: str, value: Any, dtype: type[np.generic]) -> UserArray:
 
 
 def of_buffer(field: str, value: tuple[Any, ...], dtype: type[np.generic]) -> cl_array.Array:
-    """An Array of ``(buffer, shape)`` that belongs to no queue."""
+    """Return ``(buffer, shape)`` as an Array that belongs to no queue."""
     try:
         buffer, shape = value
         return cl_array.Array(buffer.get_info(cl.mem_info.CONTEXT), tuple(shape), dtype, data=buffer)
@@ -60,7 +60,7 @@ def of_buffer(field: str, value: tuple[Any, ...], dtype: type[np.generic]) -> cl
 
 
 def of_host(field: str, value: Any) -> np.ndarray:
-    """An ndarray of the very memory of an object of another library; of numbers in lists, one with these numbers."""
+    """Return an ndarray in the same memory as another library's object; numbers in lists are copied."""
     kind = type(value).__name__
     try:
         if hasattr(value, "__dlpack_device__"):
@@ -71,7 +71,7 @@ def of_host(field: str, value: Any) -> np.ndarray:
         array = np.asarray(value)
     except FrameError:
         raise
-    except Exception as error:  # whatever another library says
+    except Exception as error:  # another library may raise any error
         raise FrameError(field, EXPECTED, f"{kind}: {one_line(error)}") from error
     if array.dtype.kind not in "biufc":
         raise FrameError(field, EXPECTED, kind)

@@ -27,25 +27,25 @@ from svgf_cl.look_ahead import blocks, both_ways
 from svgf_cl.shot_denoiser import Method, ShotDenoiser
 from svgf_cl.shot_walk import Look, ShotWalk
 
-# Frames that are read at once, and as many that are written, while one is filtered.
-# Compression takes most of the time and uses one thread a frame; more frames take more memory.
+# While a frame is filtered, this many frames are read at once, and as many are written. Compression takes most of the
+# time, and uses one thread for each frame; more frames need more memory.
 AT_ONCE = min(4, max(2, (os.cpu_count() or 1) // 2))
 
 
 @dataclass(frozen=True)
 class Style:
-    """What is written of each frame.
+    """What to write for each frame.
 
     Parameters
     ----------
     plain : bool
-        Nothing but the picture, as ``R G B``.
+        Write only the picture, as ``R G B``.
     layer : str, optional
-        Where denoised channels go, beside the noisy ones; by default they take their place.
+        A new layer for the denoised channels; by default they replace the noisy ones.
     png : bool
-        A tone-mapped PNG too.
+        Write a tone-mapped PNG, too.
     exposure : float
-        Stops by which that is brightened.
+        Stops by which the PNG is brightened.
     """
 
     plain: bool = False
@@ -56,7 +56,7 @@ class Style:
 
 @dataclass(frozen=True)
 class Job:
-    """How a shot is denoised; another process can denoise a part of it.
+    """The description of how to denoise a shot; another process can denoise a part of it.
 
     Parameters
     ----------
@@ -66,18 +66,18 @@ class Job:
         The file to write for each.
     method : Method
     how : ReadAs
-        How files are read.
+        How to read files.
     separate : SeparateFiles
         Further files of each frame.
     style : Style
-        What is written.
+        What to write.
     look_ahead : int, optional
-        How many later frames each one is made from, too; 0 for all of them, None for none.
+        Number of later frames that each picture uses, too; 0 for all of them, None for none.
 
     Raises
     ------
     SvgfError
-        Standard errors are asked for of pictures from later frames, too: those of the two runs are not independent.
+        If standard errors are on with `look_ahead`: the errors of the two runs are not independent.
     """
 
     paths: tuple[Path, ...]
@@ -101,11 +101,11 @@ class Chunk:
     Parameters
     ----------
     first : int
-        The first one that is filtered.
+        The first frame that is filtered.
     written : range
-        Those that are written.
+        The frames that are written.
     end : int
-        Behind the last one that is filtered, for `written` to be made from later frames, too.
+        One after the last frame that is filtered, because `written` may need later frames.
     """
 
     first: int
@@ -115,12 +115,12 @@ class Chunk:
 
 @dataclass(frozen=True, eq=False)
 class Made:
-    """A frame that is denoised.
+    """A denoised frame.
 
     Parameters
     ----------
     source : ShotFrame
-        What was read of it.
+        The frame as it was read.
     denoised : Denoised
     times : mapping of str to float
         Milliseconds of each pass on the device.
@@ -133,13 +133,13 @@ class Made:
 
 @dataclass(frozen=True)
 class Done:
-    """A frame that is written.
+    """A written frame.
 
     Parameters
     ----------
     target : Path
     kept : bool
-        Whether the file was there and the same.
+        Whether the same file was there already.
     times : mapping of str to float
         Milliseconds of each pass on the device.
     """
@@ -150,12 +150,12 @@ class Done:
 
 
 def steps(job: Job, chunk: Chunk) -> int:
-    """How many frames `run` filters for a chunk, in both directions."""
+    """Return how many frames `run` filters for a chunk, in both directions."""
     if job.look_ahead is None:
         return chunk.written.stop - chunk.first
     gaps = after_gaps(job.paths)
     cuts = [n for n, path in enumerate(job.paths[chunk.first : chunk.end]) if n and path in gaps]
-    count = chunk.written.stop - chunk.first  # a block that begins behind these is not begun
+    count = chunk.written.stop - chunk.first  # blocks that begin after these frames are not run
     found = [each for each in blocks(chunk.end - chunk.first, cuts, job.look_ahead or None) if each[0] < count]
     return count + sum(end - start for start, _, end in found)
 
@@ -168,21 +168,21 @@ def run(job: Job, chunk: Chunk, look: Look | None = None, advance: Callable[[], 
     job : Job
     chunk : Chunk
     look : callable, optional
-        Is given every frame before it is filtered, with the shot and its index.
+        Called for every frame before it is filtered, with the shot, the frame's index and the frame.
     advance : callable
         Called after each of `steps`.
 
     Yields
     ------
     Done
-        Of each frame that is written, in order.
+        For each frame that is written, in order.
 
     Raises
     ------
     FileError
-        A file cannot be read or written, or lacks a field.
+        If a file cannot be read or written, or lacks a field.
     SvgfError
-        As of `Denoiser.denoise`.
+        As in `Denoiser.denoise`.
     """
     shot = Shot(job.paths, job.how, job.separate)
     frames = made(shot, job, chunk, look, advance)
@@ -193,7 +193,7 @@ def run(job: Job, chunk: Chunk, look: Look | None = None, advance: Callable[[], 
 def made(
     shot: Shot, job: Job, chunk: Chunk, look: Look | None, advance: Callable[[], None]
 ) -> Iterator[tuple[int, Made]]:
-    """The index and the result of each frame of a chunk, in order, up to the last one that is written."""
+    """Yield the index and the result of each frame of a chunk, in order, up to the last one that is written."""
     if job.look_ahead is None:
         for each in made_forward(shot, job.method, range(chunk.first, chunk.written.stop), look):
             advance()
@@ -202,14 +202,14 @@ def made(
     walk = ShotWalk(shot, job.method, range(chunk.first, chunk.end), look, advance)
     for (index, source), parts in both_ways(walk, walk.cuts, job.look_ahead or None):
         yield index, Made(source, walk.composed(parts), walk.forward.profile())
-        if index == chunk.written[-1]:  # the next block is not begun
+        if index == chunk.written[-1]:  # so that the next block does not run
             return
 
 
 def made_forward(shot: Shot, method: Method, places: range, look: Look | None) -> Iterator[tuple[int, Made]]:
-    """As `made`, from earlier frames alone."""
+    """Yield the same as `made`, from earlier frames only."""
     denoiser = ShotDenoiser(shot.shape, method, len(shot.reading.lights))
-    first, second = shot.beginning()  # the same for all chunks, so that they are alike
+    first, second = shot.beginning()  # the same for all chunks, so that all are treated alike
     denoiser.settle(second.frame, second.lights, first.frame)
     for index, source in zip(places, in_order(shot.read, places, AT_ONCE), strict=True):
         if look:
@@ -229,7 +229,7 @@ def finished(shot: Shot, style: Style, target: Path, made: Made) -> Done:
 
 
 def result(shot: Shot, source: ShotFrame, denoised: Denoised, style: Style) -> Image:
-    """The file of a frame that is denoised: what its own file holds, with what was made in its place or beside it."""
+    """Return the file of a denoised frame: its source file, with denoised channels in place of noisy ones or added."""
     own = source.image.windows.data
     planes = channels(placed(denoised.picture, shot.window, own, 0.0), RGB if style.plain else shot.reading.picture)
     for names, light in {} if style.plain else denoised.lights.items():
@@ -246,12 +246,12 @@ def result(shot: Shot, source: ShotFrame, denoised: Denoised, style: Style) -> I
 
 
 def in_layer(channel: str, view_layer: str, layer: str) -> str:
-    """A channel's name in another layer, which takes the place of its view layer where it has one."""
+    """Return a channel's name in another layer, which replaces its view layer if it has one."""
     return f"{layer}.{channel.removeprefix(f'{view_layer}.' if view_layer else '')}"
 
 
 def write(target: Path, image: Image) -> bool:
-    """Write the file of a frame; return whether it was there and held the same, bit by bit."""
+    """Write the file of a frame, unless the same file exists, bit by bit; return whether it existed."""
     kept = holds(target, image)
     if not kept:
         write_image(target, image)
@@ -259,17 +259,17 @@ def write(target: Path, image: Image) -> bool:
 
 
 def png_of(target: Path) -> Path:
-    """The PNG beside a picture's file."""
+    """Return the path of the PNG beside a picture's file."""
     return target.with_suffix(".png")
 
 
 def target_paths(sources: Sequence[Path], output: Path) -> list[Path]:
-    """Name the file to write for each frame: in a folder under the frame's own name, or by a pattern with its number.
+    """Return the file to write for each frame: in a folder with the frame's own name, or by a pattern and its number.
 
     Raises
     ------
     FileError
-        One would replace a frame.
+        If one would replace a frame.
     """
     if has_number(output):
         targets = [numbered(output, number_of(source)) for source in sources]

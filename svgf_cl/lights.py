@@ -1,9 +1,9 @@
 """`LightsDenoiser`: denoises a picture by its light passes, which still add up to the picture.
 
-A pass such as Blender's DiffDir is light before it was multiplied by an albedo that has no noise, DiffCol. It is
-filtered as it is and multiplied afterwards: textures never pass through the filter, and shadows of direct light are
-not blurred by the noise of indirect light. What the picture has beyond the passes of its file is filtered as one more
-light. Where the passes add up to more than the picture, they are darkened to it before they are filtered.
+A pass such as Blender's DiffDir is light before the multiplication by an albedo without noise, DiffCol. The pass is
+filtered first, and multiplied afterwards. So textures never pass through the filter, and the noise of indirect light
+does not blur shadows of direct light. The difference between the picture and the sum of its passes is filtered as
+another light. Where the passes add up to more than the picture, they are darkened to it before they are filtered.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from svgf_cl.io.shot import Light
 Picture = npt.NDArray[np.float32]
 Channels = tuple[str, ...]
 
-# Passes in 16 bits add up to the picture but for this share of the light: each is rounded by up to 2^-12 of its size,
-# and so are the factors and the picture.
+# The sum of 16-bit passes differs from the picture by up to this share of the light: each is rounded by up to 2^-12 of
+# its size, and so are the factors and the picture.
 ROUNDING = 2.0**-9
-LEAST = 1e-6  # a difference that is nothing, where there is no light
-BACKDROP = 100.0  # depth of what is behind everything, over that of the farthest surface
+LEAST = 1e-6  # a difference that counts as 0 where there is no light
+BACKDROP = 100.0  # depth of the background over that of the farthest surface
 WHOLE, REST = ("picture",), ("rest",)
 WEIGHTS = np.array(LUMINANCE, np.float32)
 
@@ -41,9 +41,10 @@ class Denoised:
     picture : (H, W, 3) float32
         Linear HDR radiance.
     lights : mapping of tuple of str to (H, W, 3) float32
-        The denoised passes, by their channels, and the factors of passes that were filtered; the picture is their sum.
+        The denoised passes and the factors that were filtered, by their channels. The picture is the sum of the passes
+        times their factors.
     standard_error : (H, W) float32, optional
-        Of the picture's luminance, where the filter tells it.
+        The standard error of the picture's luminance, if the filter estimates it.
     """
 
     picture: Picture
@@ -58,13 +59,13 @@ class Parts:
     Parameters
     ----------
     frame : Frame
-        The guides; its color is read where there are no lights.
+        The guides; its color is read if there are no lights.
     lights : sequence of Light
-        Parts of the picture; none to filter it as a whole.
+        Parts of the picture; empty to filter it as a whole.
     rest : (H, W, 3) float32, optional
-        What the picture has beyond the sum of the lights; below 0 where it has less.
+        The picture minus the sum of the lights.
     factors : mapping of tuple of str to (H, W, 3) float32
-        The factors of lights that are others than in the file, by their channels.
+        The factors of lights that differ from those in the file, by their channels.
     """
 
     frame: Frame
@@ -93,21 +94,23 @@ class LightsDenoiser:
     shape : (int, int)
         (height, width) in pixels.
     settings : Filter
-        For all lights alike.
+        The same for all lights.
     share : float
-        As of `Denoisers`.
+        As in `Denoisers`.
     """
 
     def __init__(self, shape: Shape, settings: Filter, share: float = 1.0) -> None:
         self._denoisers = Denoisers(shape, settings, share)
 
     def filtered(self, parts: Parts) -> dict[Channels, Picture]:
-        """Filter the parts of the next frame, by their channels, `REST` or `WHOLE`; one that was dark so far is left.
+        """Filter the parts of the next frame, and return them by their channels, or by `REST` or `WHOLE`.
+
+        Parts that were always black so far are left out.
 
         Raises
         ------
         SvgfError
-            As `Denoiser.denoise`.
+            As in `Denoiser.denoise`.
         """
         frame, rest = parts.frame, parts.rest
         if rest is None:
@@ -122,11 +125,14 @@ class LightsDenoiser:
         return made
 
     def stage(self, key: Channels, name: str) -> Picture:
-        """An intermediate result of the last frame of a part; errors as of `Denoiser.stage`."""
+        """Return an intermediate result of the last frame of a part; errors as in `Denoiser.stage`."""
         return self._denoisers.stage(key, name)
 
     def standard_error(self, parts: Parts) -> Picture | None:
-        """That of the sum of the parts of the last frame, (H, W), whose noise is independent; None if unknown."""
+        """Return the standard error of the last frame's luminance, (H, W), or None if the filter does not estimate it.
+
+        The noise of the parts is taken as independent.
+        """
         factors = {light.channels: light.factor for light in parts.lights}
         squares = []
         for key in (*factors, REST, WHOLE):
@@ -136,7 +142,7 @@ class LightsDenoiser:
         return np.sqrt(np.sum(squares, axis=0, dtype=np.float32)) if squares else None
 
     def update(self, settings: Filter) -> None:
-        """Go on with other settings for all lights, as `Denoisers.update`."""
+        """Continue with other settings for all lights, as `Denoisers.update` does."""
         self._denoisers.update(settings)
 
     def reset(self) -> None:
@@ -144,14 +150,14 @@ class LightsDenoiser:
         self._denoisers.reset()
 
     def profile(self) -> dict[str, float]:
-        """Milliseconds on the device of each pass of the last frame, all lights together."""
+        """Return the milliseconds on the device of each pass of the last frame, summed over all lights."""
         return self._denoisers.profile()
 
 
 def with_backdrop(frame: Frame) -> Frame:
-    """The frame with a surface far behind all others where nothing was hit.
+    """Return the frame with a surface far behind all others where nothing was hit.
 
-    A light pass has light there only if it comes from something in between, as fog. It is filtered, too.
+    There a light pass has light only from something in between, such as fog. This light is filtered, too.
     """
     is_empty = ~np.any(frame.normal, axis=-1)
     seen = frame.depth[~is_empty & np.isfinite(frame.depth)]
@@ -161,28 +167,27 @@ def with_backdrop(frame: Frame) -> Frame:
 
 
 def single(frame: Frame, light: Picture, albedo: Picture | None) -> Frame:
-    """A frame of one light."""
+    """Return a frame with one light as its color."""
     return Frame(color=light, normal=frame.normal, depth=frame.depth, motion=frame.motion, albedo=albedo, id=frame.id)
 
 
 def finite(light: Light) -> Light:
-    """The light, black where it or its factor is not finite, as in the filter."""
+    """Return the light, black where it or its factor is not finite, as the filter treats such pixels."""
     factor = None if light.factor is None else zeroed(light.factor)
     return replace(light, radiance=zeroed(light.radiance), factor=factor)
 
 
 def zeroed(values: Picture) -> Picture:
-    """The values, with 0 instead of those that are not finite."""
+    """Return the values, with 0 for those that are not finite."""
     usable = np.isfinite(values)
     return values if usable.all() else np.where(usable, values, np.float32(0.0))
 
 
 def limited(lights: Sequence[Light], rest: Picture) -> tuple[Sequence[Light], Picture]:
-    """The lights, darkened so that their sum is at most the picture, and the rest of the picture.
+    """Return the lights, darkened so that their sum is at most the picture, and the new rest of the picture.
 
-    Where `rest`, what the picture has beyond the lights (H, W, 3), is negative, the renderer clamped a firefly in the
-    picture but not in the pass, or something covers a part of the pixel. Noisy lights are darkened there, all by one
-    share.
+    `rest` is the picture minus the lights, (H, W, 3). If it is negative, the renderer clamped a firefly in the picture
+    but not in the pass, or something covers a part of the pixel. There all noisy lights are darkened by the same share.
     """
     if rest.min(initial=0.0) >= 0.0:
         return lights, rest
@@ -197,12 +202,12 @@ def limited(lights: Sequence[Light], rest: Picture) -> tuple[Sequence[Light], Pi
 
 
 def multiplied(light: Picture, factor: Picture | None) -> Picture:
-    """A pass's part in the picture."""
+    """Return a pass times its factor: its part of the picture."""
     return light if factor is None else light * factor
 
 
 def remainder(frame: Frame, lights: Sequence[Light]) -> Picture:
-    """The picture minus the sum of its lights, (H, W, 3); 0 if this is only rounding."""
+    """Return the picture minus the sum of its lights, (H, W, 3); 0 where this is only rounding."""
     if frame.color is None:
         return np.zeros_like(lights[0].radiance)
     rest, size = np.array(frame.color), np.abs(frame.color)

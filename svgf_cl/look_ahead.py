@@ -1,4 +1,4 @@
-"""Pictures from earlier and later frames, for offline work: the mean of a forward and a backward run of a filter.
+"""Makes pictures from earlier and later frames, for offline work: the mean of a forward and a backward run.
 
 Equations: docs/algorithm.md, section 9.
 """
@@ -23,8 +23,8 @@ from svgf_cl.next_motion import check_on_host, motion_to_next
 
 Item = TypeVar("Item")
 Plane = NDArray[np.float32]
-Key = tuple[str, ...]  # of a part of a frame: the channels of a light, say
-PICTURE = ("picture",)  # the only part of a frame that is filtered as a whole
+Key = tuple[str, ...]  # names a part of a frame, for example by the channels of a light
+PICTURE = ("picture",)  # the key of a frame that is filtered as a whole
 NextMotion = Callable[[int], Plane]
 
 
@@ -39,42 +39,43 @@ def look_ahead(
 ) -> Iterator[Plane]:
     """Denoise a sequence; each picture uses earlier and later frames.
 
-    One denoiser goes over each shot from its first frame on, the other from its last frame back, and the two pictures
-    of a frame are averaged by how certain each is. With `ahead`, a shot is cut into blocks of so many frames, and the
-    backward run begins anew for each, `ahead` frames after its end: then every frame runs backward about twice, and
-    pictures come out before the whole shot has been read.
+    One denoiser runs over each shot from its first frame to the last, the other from the last to the first. The two
+    pictures of a frame are averaged by their certainty. With `ahead`, a shot is divided into blocks of this many
+    frames. For each block the backward run starts again, `ahead` frames after the block's end. Then every frame is
+    filtered backward about twice, and pictures are ready before the whole shot has been read.
 
-    It holds two frames at a time. What the backward run makes of a block is kept in files of a temporary folder (the
-    environment variable TMPDIR says where): 16 bytes a pixel, of `ahead` frames, or of all frames of a shot.
+    Two frames are in memory at a time. The backward run's results for a block are written to files in a temporary
+    folder (the environment variable TMPDIR chooses it): 16 bytes a pixel, for `ahead` frames or for all frames of a
+    shot.
 
     Parameters
     ----------
     frames : sequence of Frame
-        Of numpy arrays and of one size. Each is asked for when it is needed, two times, with `ahead` up to three; so
-        the sequence may read them from files.
+        Frames of one size with numpy arrays. Each is requested when it is needed, twice, or with `ahead` up to three
+        times; so the sequence may read them from files.
     forward, backward : Denoiser
-        Two with the same settings. They forget their past.
+        Two denoisers with the same settings. Their history is discarded.
     ahead : int, optional
-        To look at least so many frames ahead where the shot goes on so long, >= 1; by default to the end of the shot.
+        Least number of frames to look ahead, unless the shot ends before, >= 1; by default to the end of the shot.
     cuts : iterable of int
-        Indices of the frames that follow on a cut. Neither run goes across a cut.
+        Indices of the frames right after a cut. Neither run crosses a cut.
     next_motion : callable, optional
-        Gives the motion to the next frame by a frame's index, as `motion_to_next` returns it, where the renderer or
-        the cameras tell it. By default it is that of `motion_to_next`.
+        Returns the motion to the next frame for a frame's index, as `motion_to_next` does, if the renderer or the
+        cameras give it. The default is `motion_to_next`.
 
     Yields
     ------
     (H, W, 3) float32
-        The picture of each frame in order, linear HDR radiance. Meanwhile the last frame of `forward` is that same
-        frame: its stages and times can be read.
+        The picture of each frame in order, linear HDR radiance. At this time the last frame of `forward` is the same
+        frame, so that its stages and times can be read.
 
     Raises
     ------
     ArgumentError
-        If there is one denoiser in place of two, if they differ in shape or settings or do not accumulate light over
-        time, or if `ahead` or `cuts` are out of their range.
+        If `forward` and `backward` are the same denoiser, differ in shape or settings, or do not accumulate light over
+        time, or if `ahead` or `cuts` is out of range.
     FrameError, DeviceError
-        As `Denoiser.denoise`; and if a field is not a numpy array.
+        As in `Denoiser.denoise`, and if a field is not a numpy array.
     FileError
         If the files cannot be written.
 
@@ -93,7 +94,7 @@ def look_ahead(
 
 
 def pictures_of(found: Iterator[tuple[Frame, dict[Key, Plane]]]) -> Iterator[Plane]:
-    """The pictures among what was found of frames; it holds no frame itself."""
+    """Yield the pictures of results, without keeping any frame in memory."""
     for each in found:
         picture = each[1][PICTURE]
         del each
@@ -101,7 +102,7 @@ def pictures_of(found: Iterator[tuple[Frame, dict[Key, Plane]]]) -> Iterator[Pla
 
 
 def check_denoisers(forward: Denoiser, backward: Denoiser) -> TemporalFilter:
-    """The settings of two denoisers; `ArgumentError` unless they can make pictures to be averaged."""
+    """Return the settings of two denoisers; raise `ArgumentError` unless their pictures can be averaged."""
     if forward is backward:
         raise ArgumentError("look_ahead(backward)", "another denoiser than forward", "the same")
     if (forward.shape, forward.settings) != (backward.shape, backward.settings):
@@ -112,21 +113,24 @@ def check_denoisers(forward: Denoiser, backward: Denoiser) -> TemporalFilter:
 
 
 class Walk(Protocol[Item]):
-    """A shot, and two filters that go along it, one forward and one backward in time."""
+    """A shot, and two filters that run over it, one forward and one backward in time."""
 
     def __len__(self) -> int: ...
 
     def item(self, index: int) -> Item:
-        """All that there is of a frame."""
+        """Return a frame."""
 
     def to_next(self, index: int, item: Item, later: Item) -> Plane:
-        """The motion from a frame to the next one, as `motion_to_next` returns it."""
+        """Return the motion from a frame to the next one, as `motion_to_next` does."""
 
     def begin(self, *, backward: bool) -> None:
-        """Have the filter of that direction forget its past."""
+        """Discard the history of the filter for this direction."""
 
     def estimates(self, item: Item, motion: Plane | None, *, backward: bool) -> Mapping[Key, Estimate]:
-        """What the filter of that direction makes of each part of its next frame, with its own motion or another."""
+        """Filter the next frame in this direction, and return the result for each part.
+
+        If `motion` is given, it replaces the frame's own motion.
+        """
 
 
 def both_ways(walk: Walk[Item], cuts: Sequence[int], ahead: int | None) -> Iterator[tuple[Item, dict[Key, Plane]]]:
@@ -136,15 +140,16 @@ def both_ways(walk: Walk[Item], cuts: Sequence[int], ahead: int | None) -> Itera
     ----------
     walk : Walk
     cuts : sequence of int
-        In order; as of `look_ahead`.
+        As in `look_ahead`, in order.
     ahead : int, optional
-        As of `look_ahead`.
+        As in `look_ahead`.
 
     Yields
     ------
     (Item, dict of Key to (H, W, 3) float32)
-        Each frame in order, with the means of its parts. A part that one of the filters does not have is the forward
-        one's, or is left out. Meanwhile the last frame of the forward filter is that same frame.
+        Each frame in order, with the means of its parts. A part that only the forward filter has is not averaged; one
+        that only the backward filter has is left out. At this time the last frame of the forward filter is the same
+        frame.
     """
     for start, stop, end in blocks(len(walk), cuts, ahead):
         if start in (0, *cuts):
@@ -153,7 +158,7 @@ def both_ways(walk: Walk[Item], cuts: Sequence[int], ahead: int | None) -> Itera
 
 
 def blocks(count: int, cuts: Sequence[int], ahead: int | None) -> Iterator[tuple[int, int, int]]:
-    """The blocks of so many frames: the first frame, and those behind the last and behind the backward run's first."""
+    """Yield the blocks of `count` frames: the first frame, the end of the block, and the end of the backward run."""
     length = ahead or max(1, count)
     for first, end in zip([0, *cuts], [*cuts, count], strict=True):
         for start in range(first, end, length):
@@ -162,7 +167,7 @@ def blocks(count: int, cuts: Sequence[int], ahead: int | None) -> Iterator[tuple
 
 
 def block(walk: Walk[Item], start: int, stop: int, end: int) -> Iterator[tuple[Item, dict[Key, Plane]]]:
-    """The frames from `start` to before `stop`; the backward run begins at the frame before `end`."""
+    """Yield the frames from `start` to before `stop`; the backward run begins at the frame before `end`."""
     with tempfile.TemporaryDirectory(prefix="svgf_cl-") as folder:
         for index, estimates in backward_run(walk, start, end):
             if index < stop:
@@ -174,9 +179,9 @@ def block(walk: Walk[Item], start: int, stop: int, end: int) -> Iterator[tuple[I
 
 
 def backward_run(walk: Walk[Item], start: int, end: int) -> Iterator[tuple[int, Mapping[Key, Estimate]]]:
-    """Each frame from that before `end` down to `start`, and what the backward filter makes of it."""
+    """Yield each frame from the one before `end` back to `start`, with the results of the backward filter."""
     walk.begin(backward=True)
-    later: Item | None = None  # what the first one's motion leads to plays no part, for it has no history
+    later: Item | None = None  # the motion of the first one does not matter, because it has no history
     for index in reversed(range(start, end)):
         item = walk.item(index)
         motion = None if later is None else walk.to_next(index, item, later)
@@ -186,7 +191,7 @@ def backward_run(walk: Walk[Item], start: int, end: int) -> Iterator[tuple[int, 
 
 @dataclass(frozen=True, eq=False)
 class FramesWalk:
-    """A walk along frames; parameters as of `look_ahead`, and `settings` those of the denoisers."""
+    """A walk over frames; the parameters are those of `look_ahead`, and the denoisers' settings."""
 
     frames: Sequence[Frame]
     forward: Denoiser
@@ -198,13 +203,13 @@ class FramesWalk:
         return len(self.frames)
 
     def item(self, index: int) -> Frame:
-        """A frame, on the host."""
+        """Return a frame, which must be on the host."""
         frame = self.frames[index]
         check_on_host(frame)
         return frame
 
     def to_next(self, index: int, item: Frame, later: Frame) -> Plane:
-        """From a frame to the next one."""
+        """Return the motion from a frame to the next one."""
         return motion_to_next(item, later) if self.next_motion is None else self.next_motion(index)
 
     def begin(self, *, backward: bool) -> None:
@@ -212,7 +217,7 @@ class FramesWalk:
         (self.backward if backward else self.forward).reset()
 
     def estimates(self, item: Frame, motion: Plane | None, *, backward: bool) -> dict[Key, Estimate]:
-        """What a run makes of its next frame."""
+        """Filter the next frame of a run."""
         denoiser = self.backward if backward else self.forward
         picture = denoiser.denoise(item if motion is None else replace(item, motion=motion))
         return {PICTURE: Estimate(picture, self.settings.uncertainty(denoiser.stage))}
@@ -220,13 +225,13 @@ class FramesWalk:
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """What one run makes of a frame.
+    """The result of one run for a frame.
 
     Parameters
     ----------
     picture : (H, W, 3)
     uncertainty : (H, W)
-        As of `TemporalFilter.uncertainty`.
+        The result of `TemporalFilter.uncertainty`.
     """
 
     picture: Plane
@@ -234,7 +239,7 @@ class Estimate:
 
 
 def save(path: Path, estimates: Mapping[Key, Estimate]) -> None:
-    """Write estimates; `FileError` where that fails."""
+    """Write estimates; raise `FileError` if that fails."""
     try:
         with path.open("wb") as file:
             for key, estimate in estimates.items():
@@ -248,7 +253,7 @@ def save(path: Path, estimates: Mapping[Key, Estimate]) -> None:
 
 
 def load(path: Path) -> dict[Key, Estimate]:
-    """Read what `save` wrote."""
+    """Read the estimates that `save` wrote."""
     estimates = {}
     with path.open("rb") as file:
         while file.peek(1):
@@ -258,15 +263,15 @@ def load(path: Path) -> dict[Key, Estimate]:
 
 
 def file_of(folder: str, index: int) -> Path:
-    """Where the backward estimate of a frame is kept."""
+    """Return the path of the backward estimates of a frame."""
     return Path(folder) / f"{index}.parts"
 
 
 def mean(one: Estimate, other: Estimate) -> Plane:
-    """Mean of two pictures, weighted by 1 / uncertainty, (H, W, 3); of two equal values, exactly this value."""
+    """Return the mean of two pictures, weighted by 1 / uncertainty, (H, W, 3); for equal values, exactly this value."""
     total = one.uncertainty + other.uncertainty  # 0 where nothing was hit
     least = np.minimum(one.uncertainty, other.uncertainty)
-    share = np.divide(least, total, out=np.full_like(total, 0.5), where=total > 0)[..., None]  # of the less certain
+    share = np.divide(least, total, out=np.full_like(total, 0.5), where=total > 0)[..., None]  # of the less certain one
     swapped = (other.uncertainty < one.uncertainty)[..., None]
     first = np.where(swapped, other.picture, one.picture)
     picture: Plane = first + share * (np.where(swapped, one.picture, other.picture) - first)

@@ -1,4 +1,4 @@
-"""Matrices of cameras: tests for rigid ones, their inverses, and the matrices in the header of an OpenEXR file."""
+"""Matrices of cameras: checks and inverts rigid ones, and interprets those in the header of an OpenEXR file."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from svgf_cl.errors import ArgumentError, shown
 
 Array = npt.NDArray[np.float64]
 
-RIGID = 1e-3  # how far the product of a rotation and its transpose may be from the identity
-CENTRAL = 0.25  # how far the optical axis of a header's camera may be from the middle of the image, in NDC
+RIGID = 1e-3  # greatest difference between the identity and the product of a rotation and its transpose
+CENTRAL = 0.25  # greatest distance of a header's optical axis from the middle of the image, in NDC
 
 
 class Projection(NamedTuple):
-    """What `svgf_cl.camera.Camera` is made of."""
+    """The parameters of `svgf_cl.camera.Camera`."""
 
     world_to_view: Array
     focal: tuple[float, float]
@@ -26,7 +26,7 @@ class Projection(NamedTuple):
 
 
 def rigid(argument: str, value: npt.ArrayLike) -> Array:
-    """`value` as a matrix of double precision if it only turns, moves and reflects columns."""
+    """Return `value` as a double-precision matrix; raise `ArgumentError` unless it only turns, moves and reflects."""
     matrix = np.array(value, np.float64)
     if matrix.shape != (4, 4):
         raise ArgumentError(argument, "shape (4, 4)", f"shape {matrix.shape}")
@@ -39,7 +39,7 @@ def rigid(argument: str, value: npt.ArrayLike) -> Array:
 
 
 def inverse(matrix: Array) -> Array:
-    """The inverse of a matrix that turns and moves."""
+    """Return the inverse of a matrix that turns and moves."""
     result = np.eye(4)
     result[:3, :3] = np.linalg.inv(matrix[:3, :3])
     result[:3, 3] = -result[:3, :3] @ matrix[:3, 3]
@@ -52,28 +52,28 @@ def projection_of(world_to_camera: npt.ArrayLike, world_to_ndc: npt.ArrayLike, s
     Raises
     ------
     ArgumentError
-        They are not those of one camera.
+        If they do not belong to one camera.
     """
     matrix, projection = _consistent(world_to_camera, world_to_ndc)
     w_of_z, sides = projection[2, 3], np.array((shape[1], shape[0]), np.float64)
     orthographic = bool(abs(w_of_z) < 0.5)
     looks_back = bool(w_of_z < -0.5 and np.linalg.det(matrix[:3, :3]) > 0.0)
     forward = -1.0 if looks_back else 1.0
-    # How fast NDC grow along the camera's x and y at depth 1, and the NDC of its axis.
+    # The change of NDC along the camera's x and y at depth 1, and the NDC of its axis.
     slope = projection[[0, 1], [0, 1]] / (1.0 if orthographic else w_of_z * forward)
     axis = projection[3, :2] if orthographic else projection[2, :2] / w_of_z
     origin = _origin(axis)
     is_uniform = origin == 0.5 and math.isclose(*np.abs(slope), rel_tol=1e-4)
     per_unit = (sides.min() if is_uniform else sides) * (0.5 if origin == 0.0 else 1.0)
     focal = np.abs(slope) * per_unit
-    # The camera's x points to the right and its y up, whichever way those of NDC point.
+    # The camera's x points to the right and its y up, in whatever direction x and y of NDC point.
     center = (sides - 1.0) / 2.0 + (axis - origin) * per_unit * np.sign(slope) * (1.0, -1.0)
     to_view = np.diag((1.0, -1.0, forward, 1.0))
     return Projection(to_view @ matrix.T, (focal[0], focal[1]), (center[0], center[1]), orthographic)
 
 
 def _origin(axis: Array) -> float:
-    """Which NDC the middle of the image has, where the optical axis is at `axis` (x, y)."""
+    """Return the NDC of the middle of the image, if the optical axis is at `axis` (x, y)."""
     for origin in (0.0, 0.5):
         if np.all(np.abs(axis - origin) < CENTRAL):
             return origin
@@ -89,7 +89,7 @@ def _is_rigid(matrix: Array) -> bool:
 
 
 def _consistent(world_to_camera: npt.ArrayLike, world_to_ndc: npt.ArrayLike) -> tuple[Array, Array]:
-    """World to camera, and camera to NDC, for rows (x, y, z, 1), however the two matrices lay in the file."""
+    """Return world to camera, and camera to NDC, for rows (x, y, z, 1), from matrices that may be transposed."""
     camera, ndc = np.array(world_to_camera, np.float64), np.array(world_to_ndc, np.float64)
     for name, matrix in (("world_to_camera", camera), ("world_to_ndc", ndc)):
         if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
@@ -98,7 +98,7 @@ def _consistent(world_to_camera: npt.ArrayLike, world_to_ndc: npt.ArrayLike) -> 
     if not readings:
         expected = "a rotation and a translation without scale"
         raise ArgumentError("Camera.from_matrices(world_to_camera)", expected, shown(camera.tolist()))
-    # A camera that stands unturned at the origin has the same matrix either way.
+    # A camera at the origin without rotation has a symmetric matrix, so that both readings are rigid.
     matrix, projection = min(readings, key=lambda reading: _deviation(reading[1]))
     if not _deviation(projection) < RIGID:
         expected = "the projection of a camera in perspective or an orthographic one, that fits world_to_camera"
@@ -107,9 +107,10 @@ def _consistent(world_to_camera: npt.ArrayLike, world_to_ndc: npt.ArrayLike) -> 
 
 
 def _deviation(projection: Array) -> float:
-    """How far a matrix from a camera's space to NDC, for rows, is from one where x is from x, y from y, w from z or 1.
+    """Return how far a matrix from camera space to NDC, for rows, is from a projection's form.
 
-    It does not look at the last row, where matrices of single precision lose digits far from the origin.
+    In a projection, x depends on x, y on y, and w on z or 1. The last row is not used, as single precision loses digits
+    there, far from the origin.
     """
     scale = np.abs(projection[[0, 1], [0, 1]])
     if not scale.min() > 0.0:

@@ -1,4 +1,4 @@
-"""Motion to the next frame, which a backward run needs, computed from the renderer's motion to the previous frame.
+"""Computes the motion to the next frame, which a backward run needs, from the motion to the previous frame.
 
 Equations: docs/algorithm.md, section 9.
 """
@@ -18,33 +18,35 @@ Plane = NDArray[np.float32]
 Mask = NDArray[np.bool_]
 Whole = NDArray[np.int64]
 
-# How far a surface may lie off the depth that is expected of it, relative to depth, beside its slope: as the filters'
-# default `depth_threshold`. They test by their own again.
+# Greatest difference from the expected depth, relative to depth, in addition to the slope: the same as the filters'
+# default `depth_threshold`. Filters test again by their own threshold.
 DEPTH_TOLERANCE = 0.02
-CORNERS = ((0, 0), (1, 0), (0, 1), (1, 1))  # dx, dy of the four pixels around a place
+CORNERS = ((0, 0), (1, 0), (0, 1), (1, 1))  # dx, dy of the four pixels around a point
 
 
 def motion_to_next(frame: Frame, following: Frame) -> Plane:
-    """Motion from a frame to the one that follows it.
+    """Return the motion from a frame to the following one.
 
-    Every pixel of the following frame tells the four pixels around the place that it came from where they go, provided
-    that they show what it shows: the same id, if both frames have ids, and the depth that is expected there.
+    Each pixel of the following frame came from a point between four pixels of this frame. Its motion, reversed, counts
+    for those of the four that show the same surface: they have the same id, if both frames have ids, and the expected
+    depth.
 
     Parameters
     ----------
     frame, following : Frame
-        Two consecutive frames of numpy arrays and of one size. Of `following` the motion is read.
+        Two consecutive frames of one size with numpy arrays. Only the motion of `following` is read.
 
     Returns
     -------
     (H, W, 2) or (H, W, 3) float32, as the motion of `following`
-        Pixels, next minus current position: ``p_next = p + motion``. A third component is the expected next depth minus
-        the current depth. NaN, a pixel without history, where the following frame does not show the pixel's surface.
+        Next minus current position in pixels: ``p_next = p + motion``. A third component is the expected next depth
+        minus the current depth. It is NaN, which means no history, where the following frame does not show the pixel's
+        surface.
 
     Raises
     ------
     FrameError
-        If a field is not a numpy array, or the frames are of different sizes.
+        If a field is not a numpy array, or the frames have different sizes.
 
     Examples
     --------
@@ -66,7 +68,7 @@ def motion_to_next(frame: Frame, following: Frame) -> Plane:
 
 
 def check_on_host(frame: Frame) -> None:
-    """Raise `FrameError` unless the fields are numpy arrays that fit together."""
+    """Raise `FrameError` unless the fields are numpy arrays that match each other."""
     for name, value in frame.present().items():
         if not isinstance(value, np.ndarray):
             raise FrameError(name, "a numpy.ndarray, because this is computed on the host", type(value).__name__)
@@ -80,9 +82,9 @@ class Surface:
     Parameters
     ----------
     shape : (int, int)
-        (height, width) with what is around.
+        (height, width) with the border.
     nearest, farthest : (n,)
-        Depths between which a point is the pixel's surface; both 0 where nothing was hit.
+        A point between these depths belongs to the pixel's surface; both are 0 where nothing was hit.
     id : (n,), optional
     """
 
@@ -93,7 +95,7 @@ class Surface:
 
     @classmethod
     def of(cls, frame: Frame) -> Surface:
-        """What `frame` shows."""
+        """Return the surfaces of `frame`."""
         depth = known_depth(frame)
         tolerance = DEPTH_TOLERANCE * depth + 2 * slope(depth)
         return cls(
@@ -109,32 +111,32 @@ class Surface:
         return self.shape[0] * self.shape[1]
 
     def shows(self, points: Points, place: Whole) -> Mask:
-        """Whether the pixel at its place (m,) shows each point, (m,)."""
+        """Return whether the pixel at its place (m,) shows each point, (m,)."""
         shown: Mask = (self.nearest[place] <= points.depth) & (points.depth <= self.farthest[place])
         if self.id is not None and points.id is not None:
             shown &= self.id[place] == points.id
         return shown
 
     def inside(self, values: NDArray[np.float64]) -> Plane:
-        """(C, n) as (H, W, C), without what is around."""
+        """Return (C, n) as (H, W, C), without the border."""
         picture = values.reshape(-1, *self.shape)[:, 1:-1, 1:-1]
         return np.ascontiguousarray(np.moveaxis(picture, 0, -1), np.float32)
 
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """The pixels of a frame, where they were in the frame before; those that were in the picture and have motion.
+    """The positions of a frame's pixels in the previous frame, for pixels that have motion and were in the picture.
 
     Parameters
     ----------
     place : (m,)
-        The pixel above and left of each, as an index into a `Surface`.
+        The pixel above and left of each point, as an index into a `Surface`.
     right, down : (m,)
-        How far each lies from there, 0..1.
+        The distance of each point from that pixel, 0..1.
     depth : (m,)
-        Expected there; 0 where nothing was hit.
+        The depth that is expected there; 0 where nothing was hit.
     motion : (2, m) or (3, m)
-        Of the frame, component by component.
+        The frame's motion, component by component.
     id : (m,), optional
     """
 
@@ -147,7 +149,7 @@ class Points:
 
     @classmethod
     def of(cls, frame: Frame) -> Points:
-        """The pixels of `frame`."""
+        """Return the points of the pixels of `frame`."""
         height, width = frame.shape
         motion = np.asarray(frame.motion, np.float32)
         x = np.arange(width, dtype=np.float32) + motion[..., 0]
@@ -162,20 +164,20 @@ class Points:
         return cls(place, x - left, y - top, depth, components, None if frame.id is None else frame.id[known])
 
     def weight(self, dx: int, dy: int) -> Plane:
-        """Bilinear weight of the pixel so far right of and below `place`, (m,)."""
+        """Return the bilinear weight of the pixel (dx, dy) from `place`, (m,)."""
         weight: Plane = (self.right if dx else 1 - self.right) * (self.down if dy else 1 - self.down)
         return weight
 
 
 def known_depth(frame: Frame) -> Plane:
-    """Depth, 0 where nothing was hit, (H, W)."""
+    """Return depth, (H, W), with 0 where nothing was hit."""
     return np.where(is_hit(frame.depth, frame.normal), frame.depth, 0).astype(np.float32)
 
 
 def slope(depth: Plane) -> Plane:
-    """The change of depth to the next pixel in a row, plus that in a column, (H, W).
+    """Return the change of depth to the neighbour in the row, plus that in the column, (H, W).
 
-    Of both neighbours that of the more similar depth counts, which lies across no edge.
+    The more similar of both neighbours counts, as the other may lie across an edge.
     """
     known = np.pad(np.where(depth > 0, depth, np.nan), 1, constant_values=np.nan)
     across, along = np.abs(np.diff(known[1:-1], axis=1)), np.abs(np.diff(known[:, 1:-1], axis=0))

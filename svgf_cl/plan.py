@@ -24,7 +24,7 @@ from svgf_cl.schedule import IN_PLACE, Schedule, ScheduledPass, whole_groups
 
 @dataclass(frozen=True)
 class Workplace:
-    """Where the kernels of a plan run, and how their work is divided.
+    """The queue, layout and tuning with which the kernels of a plan run.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class Workplace:
     layout : Layout
     tuning : Tuning
     keeps_stages : bool
-        Whether every stage is copied aside, so that all can be read after a frame.
+        Whether every stage is copied, so that all can be read after a frame.
     """
 
     queue: cl.CommandQueue
@@ -42,7 +42,7 @@ class Workplace:
 
 
 class Plan:
-    """A pipeline made ready to run.
+    """A pipeline that is ready to run.
 
     Parameters
     ----------
@@ -52,12 +52,12 @@ class Plan:
     Attributes
     ----------
     stages : dict of str to Stage
-        What can be read after a frame, by name.
+        The stages that can be read after a frame, by name.
 
     Raises
     ------
     DeviceError
-        If the device has no room, or its compiler refuses a kernel.
+        If the device does not have enough memory, or its compiler fails.
     """
 
     def __init__(self, pipeline: Pipeline, workplace: Workplace) -> None:
@@ -68,11 +68,11 @@ class Plan:
         self._buffers = Buffers(workplace.queue, schedule.memory, copies=workplace.keeps_stages)
         self._turns = self._launches(schedule)
         self._frame_number = 0
-        self._without_past: list[Resource] = []  # of those that last, until the next frame
+        self._without_past: list[Resource] = []  # lasting resources whose history is unknown in the next frame
 
     @property
     def nbytes(self) -> int:
-        """Device memory held for planes, in bytes."""
+        """Device memory for planes, in bytes."""
         return self._buffers.nbytes
 
     def run(
@@ -85,7 +85,7 @@ class Plan:
         user : mapping of str to pyopencl.Buffer
             The user's arrays.
         first : bool
-            Whether nothing is known of the past.
+            Whether there is no history.
         after_pass : AfterPass, optional
 
         Returns
@@ -110,14 +110,14 @@ class Plan:
         return done
 
     def set_scalars(self, pipeline: Pipeline) -> None:
-        """Take the numbers of a pipeline that differs only in its numbers."""
+        """Use the numbers of a pipeline that differs only in its numbers."""
         for turn in self._turns:
             for each, entry in zip(turn, pipeline.passes, strict=True):
                 each.set_scalars(entry)
         self.pipeline = pipeline
 
     def inherit(self, other: Plan) -> bool:
-        """Take over the history of a plan for the same place; return False if it is stored in another way."""
+        """Take over the history of a plan for the same workplace; return False if it is stored in another way."""
         mine, others = self.pipeline.lasting, other.pipeline.lasting
         if any(resource not in others and not resource.tells_unknown for resource in mine):
             return False
@@ -127,18 +127,18 @@ class Plan:
         return True
 
     def read(self, name: str) -> np.ndarray:
-        """A stage of the last frame, ([signals,] H, W[, channels]) float32; errors as by `raw`."""
+        """Return a stage of the last frame, ([signals,] H, W[, channels]) float32; errors as in `raw`."""
         stage = self.stages[name]
         planes = self._at.layout.every(stage.resource.spacing).crop(self.raw(name))
         return stage.image(planes)
 
     def raw(self, name: str) -> np.ndarray:
-        """The whole buffer of a stage of the last frame, halo included, as elements of the stage's format.
+        """Return the whole buffer of a stage of the last frame, with the halo, in the stage's format.
 
         Raises
         ------
         SvgfError
-            If its memory went to a later stage.
+            If a later stage has overwritten it.
         """
         stage = self.stages[name]
         buffer = Buffer(stage.resource)
@@ -152,7 +152,7 @@ class Plan:
                 self._buffers.copy_aside(each.of)
 
     def _launches(self, schedule: Schedule) -> list[tuple[Launch, ...]]:
-        """The launches of each turn."""
+        """Return the launches of each turn."""
         constants, found = uploaded(self._at.queue, schedule.pipeline), []
         for _ in range(TURNS):
             self._buffers.begin_frame()
@@ -165,7 +165,7 @@ class Plan:
 
 
 def uploaded(queue: cl.CommandQueue, pipeline: Pipeline) -> list[dict[str, cl.Buffer]]:
-    """The constant arrays of each pass in device memory, by the kernel's names."""
+    """Copy the constant arrays of each pass to the device, and return their buffers by the kernel's names."""
     found: list[dict[str, cl.Buffer]] = []
     for entry in pipeline.passes:
         found.append({name: allocate(queue, values.nbytes, values.nbytes) for name, values in entry.arrays.items()})
@@ -175,7 +175,7 @@ def uploaded(queue: cl.CommandQueue, pipeline: Pipeline) -> list[dict[str, cl.Bu
 
 
 def launch(schedule: Schedule, scheduled: ScheduledPass, memory: Mapping[str, cl.Buffer], at: Workplace) -> Launch:
-    """A pass of a schedule made ready to run.
+    """Return the launch of a pass of a schedule.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ def launch(schedule: Schedule, scheduled: ScheduledPass, memory: Mapping[str, cl
 
 
 def fitting(work_group: Grid, kernel: cl.Kernel, device: cl.Device) -> Grid:
-    """A work-group that is small enough for one kernel on a device; many registers allow fewer work-items."""
+    """Return a work-group that is small enough for a kernel on a device; many registers allow fewer work-items."""
     most = kernel.get_work_group_info(cl.kernel_work_group_info.WORK_GROUP_SIZE, device)
     along = min(work_group[0], most)
     return along, min(work_group[1], most // along)

@@ -1,9 +1,8 @@
 """`Prefilter`: removes noise from the guides of the filter before the light is filtered.
 
-The albedo of a rough mirror is that of whatever a sample reflected. Under depth of field, motion blur and fog, and
-where rays go through random places of their pixels, depth and the factors of light passes are noisy, too. Each of them
-goes through the filter itself, as light without surfaces: what noise changes from frame to frame is smoothed, the rest
-is kept.
+The albedo of a rough mirror is that of the surface that a sample reflected, so it is noisy. With depth of field, motion
+blur, fog or jittered rays, depth and the factors of light passes are noisy, too. Each of these guides is filtered like
+light without surfaces: the filter smooths the noise that changes from frame to frame, and keeps the rest.
 """
 
 from __future__ import annotations
@@ -22,13 +21,13 @@ from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.shot import Light
 
 Array = npt.NDArray[np.float32]
-# Whether guides other than albedo are filtered: "auto" where depth is noisy, "on" always; "off" leaves albedo, too.
+# Whether guides other than albedo are filtered: "auto" if depth is noisy, "on" always. "off" filters no guide at all.
 Effort = Literal["auto", "on", "off"]
 EFFORTS: tuple[Effort, ...] = ("auto", "on", "off")
 
-# Albedos below it stay as they are: those of lamps, from which light must not leak into their surroundings.
+# Lower albedos are not filtered: they are those of lamps, whose light must not leak into their surroundings.
 BLACK = 0.01
-LEAST_HIT = 0.3  # length of a mean of normals, of which some are 0, where something was hit
+LEAST_HIT = 0.3  # least length of a mean of normals, some of which are 0, where something was hit
 
 
 class Prefilter:
@@ -41,10 +40,10 @@ class Prefilter:
     is_noisy : bool
         Whether depth is filtered, too, and holes in normals are filled; albedo always is filtered.
     is_followed : bool
-        Whether motion is known, so that factors of lights, and light that is seen directly, are filtered like depth.
-        They hold textures, which would be smeared if they moved and motion were 0, as with Blender's motion blur.
+        Whether motion is known. Only then are factors of lights, and directly visible light, filtered like depth: they
+        contain textures, which would be smeared if objects move and motion is 0, as with Blender's motion blur.
     share : float
-        As of `Denoisers`.
+        As in `Denoisers`.
     """
 
     def __init__(self, shape: Shape, *, is_noisy: bool, is_followed: bool = True, share: float = 1.0) -> None:
@@ -54,7 +53,7 @@ class Prefilter:
         self._flat[..., 2] = 1.0
 
     def frame(self, frame: Frame) -> Frame:
-        """The same frame with better guides."""
+        """Return the frame with filtered guides."""
         better: dict[str, Array] = {}
         if frame.albedo is not None:
             filtered = self._filtered("albedo", frame, frame.albedo)
@@ -68,7 +67,7 @@ class Prefilter:
         return replace(frame, **better)
 
     def lights(self, frame: Frame, lights: Sequence[Light]) -> tuple[Light, ...]:
-        """The same lights with better factors; lights that are seen directly are then filtered, too."""
+        """Return the lights with filtered factors; directly visible lights are then marked as noisy, too."""
         if not self._filters_lights:
             return tuple(lights)
         factors: dict[tuple[str, ...], Array] = {}
@@ -79,7 +78,7 @@ class Prefilter:
         return tuple(replace(light, factor=factors.get(light.factor_channels), filtered=True) for light in lights)
 
     def _without_holes(self, frame: Frame) -> Array:
-        """The normals, also where a ray that was scattered before it hit something left a hole."""
+        """Return the normals, with holes filled that scattered rays left."""
         normal = 2.0 * self._filtered("normal", frame, 0.5 * frame.normal + 0.5) - 1.0
         length = np.linalg.norm(normal, axis=-1, keepdims=True)
         is_hole = ~frame.normal.any(axis=-1, keepdims=True) & (length > LEAST_HIT)
@@ -91,7 +90,7 @@ class Prefilter:
         self._denoisers.reset()
 
     def _filtered(self, name: str, frame: Frame, value: Array) -> Array:
-        """A guide (H, W, 3), filtered as light that lies on no surface."""
+        """Return a guide (H, W, 3), filtered like light without surfaces."""
         depth, motion = self._flat[..., 2], frame.motion[..., :2]
         whole = Frame(color=np.asarray(value, np.float32), normal=self._flat, depth=depth, motion=motion)
         least, most = extremes(whole.color)
@@ -100,7 +99,7 @@ class Prefilter:
 
 
 def is_black_area(albedo: Array) -> npt.NDArray[np.bool_]:
-    """Whether a pixel and most of its eight neighbours are black, (H, W, 1): a single one is noise."""
+    """Return where a pixel and most of its eight neighbours are black, (H, W, 1): a single black pixel is noise."""
     padded = np.pad(albedo.max(axis=-1) < BLACK, 1, mode="edge").astype(np.int8)
     height, width = albedo.shape[:2]
     count = sum(padded[y : y + height, x : x + width] for y in range(3) for x in range(3))

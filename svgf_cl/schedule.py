@@ -1,6 +1,6 @@
-"""`Schedule`: a pipeline for frames of one size, as launches and memory, whatever the device.
+"""`Schedule`: a pipeline for frames of one size, as launches and memory, the same for all devices.
 
-`svgf_cl.plan.Plan` carries it out, and `svgf_cl.export` writes it to files for hosts in other languages.
+`svgf_cl.plan.Plan` runs it, and `svgf_cl.export` writes it to files for hosts in other languages.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from svgf_cl.device.tuning import Tuning
 from svgf_cl.filters.pipeline import OUT, PAST, Buffer, Pass, Pipeline
 from svgf_cl.frame import CHANNELS, element_type
 
-# Where the pixels of a whole frame lie in the past.
+# The offset of a whole frame's pixels in the previous frame.
 IN_PLACE: Mapping[str, int] = dict.fromkeys(PAST, 0)
 
 
 @dataclass(frozen=True)
 class ArrayType:
-    """What an array of the user's is: C order, from its buffer's first byte."""
+    """The shape and type of an array of the user, which is in C order from its buffer's first byte."""
 
     shape: tuple[int, ...]
     dtype: np.dtype[np.generic]
@@ -42,7 +42,7 @@ class ScheduledPass:
     sizes : mapping of str to (4,) int32
         Arguments that are layouts, by the kernel's names.
     work_items : (int, int)
-        Vectors along a row and rows; on a device each is rounded up to whole work-groups.
+        Number of vectors along a row, and number of rows; on a device both are rounded up to whole work-groups.
     """
 
     entry: Pass
@@ -51,7 +51,7 @@ class ScheduledPass:
 
     @property
     def values(self) -> dict[str, np.ndarray | np.generic]:
-        """Arguments that stay the same from frame to frame and are no memory, by the kernel's names."""
+        """Arguments that stay the same from frame to frame and are no buffers, by the kernel's names."""
         return {**self.sizes, **scalar_arguments(self.entry)}
 
     @property
@@ -75,12 +75,12 @@ class Schedule:
     layout : Layout
     tuning : Tuning
     past : Layout, optional
-        Of the buffers that the previous frame left, if it is not that of the others.
+        Layout of the previous frame's buffers, if it differs from that of the others.
 
     Raises
     ------
     ValueError
-        If a pass reads further from a pixel than the halo reaches.
+        If a pass reads farther from a pixel than the halo reaches.
     """
 
     pipeline: Pipeline
@@ -104,7 +104,7 @@ class Schedule:
 
     @cached_property
     def arrays(self) -> dict[str, ArrayType]:
-        """The user's arrays by name: those that are read, then `OUT`."""
+        """The user's arrays by name: those that are read, and then `OUT`."""
         channels = {
             each.of: each.uses[0].quantity.channels
             for scheduled in self.passes
@@ -135,5 +135,5 @@ class Schedule:
 
 
 def whole_groups(work_items: Grid, work_group: Grid) -> Grid:
-    """So many work-items, rounded up to whole work-groups; kernels skip those outside the image."""
+    """Return the work-items, rounded up to whole work-groups; kernels skip those outside the image."""
     return rounded_up(work_items[0], work_group[0]), rounded_up(work_items[1], work_group[1])

@@ -1,7 +1,7 @@
-"""Where independent work is done: in this process, or by the workers of a Dask cluster.
+"""Runs independent tasks in this process, or on the workers of a Dask cluster.
 
-Both do it by the same function of what all items share (a shot) and an item (the number of a frame, or a chunk), and
-hand back the results in the order of the items: what is made of them does not depend on where they come from.
+Both ways call the same function with a shared argument (a shot) and an item (the number of a frame, or a chunk), and
+return the results in the order of the items. So the results do not depend on where the tasks run.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Shared = TypeVar("Shared")
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
-# Seconds that a scheduler may take to answer.
+# Most seconds that a scheduler may take to answer.
 PATIENCE = 5
 
 
@@ -39,25 +39,25 @@ class Map(Protocol):
 
 
 def here(function: Callable[[Shared, Item], Result], shared: Shared, items: Iterable[Item], /) -> Iterator[Result]:
-    """A `Map` that does one item after the other in this process, each when its result is asked for."""
+    """Apply a function in this process, to one item after the other, each when its result is needed; a `Map`."""
     return (function(shared, item) for item in items)
 
 
 @contextmanager
 def scheduled(address: str | None, version: Callable[[], str]) -> Iterator[Map]:
-    """The `Map` on the cluster of the Dask scheduler at `address`, or `here` where there is none.
+    """Yield the `Map` on the cluster of the Dask scheduler at `address`, or `here` if there is no address.
 
     Parameters
     ----------
     address : str, optional
     version : callable
-        Names the version of the code that a process has, of all that results depend on: workers with another one than
-        this process are refused.
+        Returns the version of all code that affects the results. Workers whose version differs from this process's are
+        refused.
 
     Raises
     ------
     SchedulerError
-        dask.distributed is not installed, no scheduler answers at `address`, or it has no worker.
+        If dask.distributed is not installed, no scheduler answers at `address`, or it has no worker.
     """
     if address is None:
         yield here
@@ -69,31 +69,31 @@ def scheduled(address: str | None, version: Callable[[], str]) -> Iterator[Map]:
 class Cluster:
     """A `Map` on the workers of a Dask cluster.
 
-    A few tasks a worker are in flight at a time, however many items there are. What a worker was at when it died is
-    done again by another.
+    A few tasks for each worker are in flight at a time, however many items there are. If a worker dies, another one
+    repeats its task.
 
     Parameters
     ----------
     client : distributed.Client
-        Connected to a scheduler.
+        A client that is connected to a scheduler.
     version : callable
-        As for `scheduled`.
+        As in `scheduled`.
     """
 
     def __init__(self, client: Client, version: Callable[[], str]) -> None:
         self._client = client
         self._version = version
-        self._sent: dict[int, tuple[object, Future[Any]]] = {}  # by identity: what is kept here has its own
+        self._sent: dict[int, tuple[object, Future[Any]]] = {}  # by id(), which is unique while the object is kept here
 
     def __call__(
         self, function: Callable[[Shared, Item], Result], shared: Shared, items: Iterable[Item], /
     ) -> Iterator[Result]:
-        """Results in the order of `items`.
+        """Yield the results in the order of `items`.
 
         Raises
         ------
         SchedulerError
-            A worker has another version or lacks a package, a task kills its workers, or the scheduler is gone.
+            If a worker has another version or lacks a package, a task kills its workers, or the scheduler is gone.
         """
         from distributed import KilledWorker
 
@@ -102,7 +102,7 @@ class Cluster:
         pending: deque[Future[Any]] = deque()
         try:
             while True:
-                # Workers come and go; while there is none, one task waits for the next.
+                # Workers come and go; while there is none, one task waits for a new worker.
                 room = max(1, 2 * sum(self._client.nthreads().values())) - len(pending)
                 items = islice(remaining, max(0, room))
                 pending.extend(self._client.submit(partial.__call__, task, there, item, pure=False) for item in items)
@@ -125,17 +125,17 @@ class Cluster:
             self._client.cancel(pending)
 
     def _send(self, shared: object) -> Future[Any]:
-        """What all items share, on the cluster, sent once; workers hand it on to each other."""
+        """Send the shared argument to the cluster once; workers pass it on to each other."""
         if id(shared) not in self._sent:
             self._sent[id(shared)] = shared, self._load(shared)
         return self._sent[id(shared)][1]
 
     def _load(self, thing: object) -> Future[Any]:
-        """A thing on the cluster.
+        """Return an object on the cluster, as the result of a task that unpickles it.
 
-        It is the result of a task, since Dask can make that again when every worker that has it dies; of scattered data
-        it cannot. And a worker that lacks a package of the thing fails in the task, and says so: of functions that Dask
-        unpickles itself, it would try again for ever.
+        Dask can repeat a task if every worker with its result dies; it cannot do this for scattered data. And if a
+        worker lacks a package that the object needs, the task fails with an error; if Dask unpickled the object itself,
+        it would try again forever.
         """
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message="Sending large graph", category=UserWarning)
@@ -145,7 +145,7 @@ class Cluster:
 def _do(
     function: Callable[[Shared, Item], Result], version: Callable[[], str], expected: str, shared: Shared, item: Item
 ) -> Result:
-    """One task, on a worker."""
+    """Run one task on a worker."""
     if version() != expected:
         raise SchedulerError(
             "--scheduler: expected workers with this version of svgf_cl and its libraries, found another version"
@@ -159,14 +159,14 @@ def _connected(address: str) -> Iterator[Client]:
         import distributed
     except ModuleNotFoundError as error:
         raise SchedulerError(f"--scheduler needs Dask ({error}): {install_extra('dask')}") from error
-    # A client that cannot connect would not let the process end for a while: ask before there is one.
+    # A client that cannot connect would delay the end of the process, so test the address first.
     _check(asyncio.run(_identity(address)), address)
     with distributed.Client(address, timeout=PATIENCE, set_as_default=False) as client:
         yield client
 
 
 async def _identity(address: str) -> dict[str, Any]:
-    """What the Dask server at `address` says of itself."""
+    """Return the description that the Dask server at `address` gives of itself."""
     from distributed import rpc
 
     try:
@@ -180,7 +180,7 @@ async def _identity(address: str) -> dict[str, Any]:
 
 
 def _check(identity: Mapping[str, Any], address: str) -> None:
-    """Raise `SchedulerError` unless that is a scheduler with workers."""
+    """Raise `SchedulerError` unless the server is a scheduler with workers."""
     if identity["type"] != "Scheduler":
         raise SchedulerError(f"--scheduler: expected a Dask scheduler at {address}, found a {identity['type']}")
     if not identity["workers"]:

@@ -1,4 +1,4 @@
-"""How a setting is declared: default, range, unit and reason; checks and help are derived from this."""
+"""Declares settings with default, range, unit and reason; checks and help are derived from these."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from svgf_cl.errors import SettingsError, shown
 
-DOMAIN, UNIT, REASON = "domain", "unit", "reason"  # of a field's metadata
+DOMAIN, UNIT, REASON = "domain", "unit", "reason"  # keys of a field's metadata
 SWITCHES = {"true": True, "on": True, "1": True, "false": False, "off": False, "0": False}
 
 Value = bool | int | float | str
@@ -25,10 +25,10 @@ class Domain(Protocol):
         """Whether the setting may have this value."""
 
     def plain(self, value: Any) -> Value:
-        """An allowed value as a plain Python object."""
+        """Return an allowed value as a plain Python object."""
 
     def parse(self, text: str) -> Value:
-        """The value that a text stands for, not yet checked; KeyError or ValueError where it is none."""
+        """Return the value of a text, not yet checked; raise `KeyError` or `ValueError` if it has none."""
 
     def __str__(self) -> str: ...
 
@@ -47,7 +47,7 @@ class Range:
         return number and self.least <= value <= self.greatest  # type: ignore[operator]
 
     def plain(self, value: Any) -> Value:
-        """NumPy's numbers, and whole ones where any may stand, as int or float."""
+        """Return any number as int if it must be whole, else as float."""
         return int(value) if self.whole else float(value)
 
     def parse(self, text: str) -> Value:
@@ -65,15 +65,15 @@ class Choice:
     words: tuple[str, ...]
 
     def holds(self, value: object) -> bool:
-        """Whether `value` is one of them."""
+        """Whether `value` is one of the words."""
         return isinstance(value, str) and value in self.words
 
     def plain(self, value: Any) -> Value:
-        """The word itself."""
+        """Return the word itself."""
         return str(value)
 
     def parse(self, text: str) -> Value:
-        """Take the text as it is."""
+        """Return the text unchanged."""
         return text
 
     def __str__(self) -> str:
@@ -89,11 +89,11 @@ class Switch:
         return isinstance(value, bool | np.bool_)
 
     def plain(self, value: Any) -> Value:
-        """NumPy's True and False as Python's."""
+        """Return Python's True or False, also for NumPy's."""
         return bool(value)
 
     def parse(self, text: str) -> Value:
-        """Read on, off and the like."""
+        """Read one of the texts of `SWITCHES`."""
         return SWITCHES[text.lower()]
 
     def __str__(self) -> str:
@@ -101,7 +101,7 @@ class Switch:
 
 
 def number(default: float, span: tuple[float, float], *, unit: str, reason: str) -> Any:
-    """Declare a setting that is a number in `span`; a whole one where its default is written as one."""
+    """Declare a setting that is a number in `span`; it is a whole number if its default is an int."""
     return declared(default, Range(*span, whole=isinstance(default, int)), unit, reason)
 
 
@@ -116,7 +116,7 @@ def switch(default: bool, *, reason: str) -> Any:
 
 
 def declared(default: Value, domain: Domain, unit: str, reason: str) -> Any:
-    """The dataclass field of a setting."""
+    """Return the dataclass field of a setting."""
     return field(default=default, metadata={DOMAIN: domain, UNIT: unit, REASON: reason})
 
 
@@ -133,17 +133,17 @@ class SettingsBase:
 
 
 def domains(settings: type[SettingsBase]) -> dict[str, Domain]:
-    """The domain of each setting of a class."""
+    """Return the domain of each setting of a class."""
     return {each.name: each.metadata[DOMAIN] for each in fields(settings)}
 
 
 def defaults(settings: type[SettingsBase]) -> dict[str, Any]:
-    """The default of each setting of a class."""
+    """Return the default of each setting of a class."""
     return {each.name: each.default for each in fields(settings)}
 
 
 def documented(settings: SettingsClass) -> SettingsClass:
-    """Add every setting with its domain, unit, default and reason to a class's docstring, as numpydoc has it."""
+    """Add every setting with its domain, unit, default and reason to a class's docstring, in numpydoc's format."""
     lines = []
     for each in fields(settings):
         parts = (str(each.metadata[DOMAIN]), each.metadata[UNIT], f"default {each.default!r}")

@@ -1,4 +1,4 @@
-"""`ShotDenoiser`: denoises the frames of a shot from its files, with guides and light passes."""
+"""`ShotDenoiser`: denoises the frames of a shot, with their guides and light passes."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ from svgf_cl.io.shot import Light
 from svgf_cl.lights import Channels, Denoised, LightsDenoiser, Parts, Picture, finite, limited, remainder
 from svgf_cl.prefilter import Effort, Prefilter
 
-# Of pixels that are darker than the sum of their lights: where they are more, the passes are not parts of the picture.
+# If a larger share of pixels is darker than the sum of their lights, the passes are not parts of the picture.
 STRAY = 0.01
-GUIDES = 4  # denoisers beside those of lights and their factors, at most: albedo, normals, depth, the rest of the light
+GUIDES = 4  # most denoisers in addition to those of lights and factors: albedo, normals, depth, the rest of the light
 
 
 @dataclass(frozen=True)
 class Method:
-    """How the frames of a shot are denoised.
+    """The method to denoise the frames of a shot.
 
     Parameters
     ----------
     settings : Filter
     lights : bool
-        Whether the light passes that a picture is the sum of are denoised one by one; else the picture as a whole.
+        Whether the light passes whose sum is the picture are denoised one by one; else the picture as a whole.
     prefilter : {"auto", "on", "off"}
-        Whether noise is taken out of depth and the factors of light passes, and holes in normals are filled: "auto"
-        does it where the depth of the shot is noisy. Albedo is filtered unless it is "off".
+        Whether depth and the factors of light passes are denoised, and holes in normals are filled: "auto" does it if
+        the depth of the shot is noisy. Albedo is denoised unless it is "off".
     """
 
     settings: Filter
@@ -42,7 +42,7 @@ class Method:
 
 
 class ShotDenoiser:
-    """Denoises the frames of a shot, in order; of a shot that is run backward, in that order.
+    """Denoises the frames of a shot in order, forward or backward in time.
 
     Parameters
     ----------
@@ -50,9 +50,9 @@ class ShotDenoiser:
         (height, width) in pixels.
     method : Method
     lights : int
-        How many light passes frames have.
+        Number of light passes of the frames.
     share : float
-        Of the device's memory, for all that is filtered of a frame together.
+        The share of the device's memory for all denoisers of a frame together.
     """
 
     def __init__(self, shape: Shape, method: Method, lights: int = 0, share: float = 1.0) -> None:
@@ -64,10 +64,10 @@ class ShotDenoiser:
         self._is_settled = self._has_parts = self._lacks_motion = False
 
     def settle(self, frame: Frame, lights: Sequence[Light] = (), previous: Frame | None = None) -> None:
-        """Decide from a frame for the whole shot how guides are filtered, and whether lights are parts of the picture.
+        """Decide for the whole shot how guides are filtered, and whether the picture is the sum of its lights.
 
-        By default that is the first frame that comes. With the frame before it, it tells whether motion is missing:
-        then each frame is filtered alone. Other parameters are those of `denoise`.
+        By default the first frame that comes decides. With the previous frame, this also finds whether motion is
+        missing; then each frame is filtered alone. The other parameters are those of `denoise`.
         """
         self._lacks_motion = previous is not None and lacks_motion(frame, previous)
         if self._method.prefilter != "off":
@@ -85,19 +85,19 @@ class ShotDenoiser:
         ----------
         frame : Frame
         lights : sequence of Light
-            What its picture is the sum of; none to filter the picture as a whole.
+            The lights whose sum is its picture; empty to filter the picture as a whole.
 
         Raises
         ------
         SvgfError
-            As of `Denoiser.denoise`.
+            As in `Denoiser.denoise`.
         """
         parts = self.parts(frame, lights)
         made = self.filtered(parts)
         return parts.composed(made, self._lights.standard_error(parts))
 
     def parts(self, frame: Frame, lights: Sequence[Light] = ()) -> Parts:
-        """What is to be filtered of the next frame, with its guides filtered already; parameters of `denoise`."""
+        """Return the parts of the next frame to filter, with filtered guides; the parameters are those of `denoise`."""
         if not self._is_settled:
             self.settle(frame, lights)
         if self._lacks_motion:
@@ -105,7 +105,7 @@ class ShotDenoiser:
         guided = self._prefilter.frame(frame) if self._prefilter else frame
         if not (lights and self._method.lights):
             return Parts(guided)
-        if not self._has_parts:  # light that is seen directly may be of another picture, too
+        if not self._has_parts:  # directly visible light may belong to another picture, too
             return Parts(replace(guided, direct=None, indirect=None, emission=None))
         lights = [finite(light) for light in lights]
         lights, rest = limited(lights, remainder(frame, lights))
@@ -113,17 +113,17 @@ class ShotDenoiser:
         return Parts(guided, better, rest, new_factors(lights, better))
 
     def filtered(self, parts: Parts) -> dict[Channels, Picture]:
-        """Filter the parts of the next frame; errors as of `denoise`."""
+        """Filter the parts of the next frame; errors as in `denoise`."""
         return self._lights.filtered(parts)
 
     def uncertainty(self, channels: Channels) -> Picture:
-        """How uncertain a part of the last frame is, (H, W), as `TemporalFilter.uncertainty` has it."""
+        """Return the uncertainty of a part of the last frame, (H, W); see `TemporalFilter.uncertainty`."""
         settings = self._method.settings
         assert isinstance(settings, TemporalFilter)
         return settings.uncertainty(partial(self._lights.stage, channels))
 
     def update(self, settings: Filter) -> None:
-        """Go on with other settings or another filter, as `Denoisers.update`; guides are filtered as before."""
+        """Continue with other settings or another filter, as `Denoisers.update` does; guides are filtered as before."""
         self._lights.update(settings)
         self._method = replace(self._method, settings=settings)
 
@@ -134,18 +134,18 @@ class ShotDenoiser:
             self._prefilter.reset()
 
     def profile(self) -> dict[str, float]:
-        """Milliseconds on the device of each pass of the last frame, all lights together."""
+        """Return the milliseconds on the device of each pass of the last frame, summed over all lights."""
         return self._lights.profile()
 
     def _guided_lights(self, frame: Frame, lights: Sequence[Light]) -> Sequence[Light]:
-        """Lights with better factors; without a prefilter, the albedo of what is reflected is too noisy to be used."""
+        """Return lights with filtered factors; without a prefilter, the reflected albedo is too noisy to be used."""
         if self._prefilter:
             return self._prefilter.lights(frame, lights)
         return [replace(light, reflects=False) for light in lights]
 
 
 def new_factors(before: Sequence[Light], after: Sequence[Light]) -> dict[Channels, Picture]:
-    """The factors of lights that are others than before, by their channels."""
+    """Return the factors of lights that have changed, by their channels."""
     return {
         new.factor_channels: new.factor
         for old, new in zip(before, after, strict=True)
@@ -154,7 +154,7 @@ def new_factors(before: Sequence[Light], after: Sequence[Light]) -> dict[Channel
 
 
 def is_sum(rest: Picture) -> bool:
-    """Whether the passes add up to at most the picture, given the rest of the picture; warns if not."""
+    """Return whether the sum of the passes is at most the picture, by the rest of the picture; warn if not."""
     share = float((rest.min(axis=-1) < 0.0).mean())
     if share > STRAY:
         warnings.warn(

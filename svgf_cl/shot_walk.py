@@ -1,4 +1,4 @@
-"""`ShotWalk`: a walk over a shot's files in both directions, so that pictures can use later frames."""
+"""`ShotWalk`: filters a shot's files forward and backward, so that pictures can use later frames."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ Item = tuple[int, ShotFrame]
 
 
 class ShotWalk:
-    """A walk along a shot, light pass by light pass.
+    """A `svgf_cl.look_ahead.Walk` over a shot, with each light pass as a part.
 
     Parameters
     ----------
     shot : Shot
     method : Method
     places : range
-        The frames of the shot to go along.
+        The indices of the frames.
     look : callable, optional
-        Is given every frame before the forward filter takes it, with the shot and its index.
+        Called for every frame before the forward filter, with the shot, the frame's index and the frame.
     advance : callable
         Called after every frame, in both directions.
     """
@@ -39,7 +39,7 @@ class ShotWalk:
         advance: Callable[[], None] = lambda: None,
     ) -> None:
         self._shot, self._places, self._look, self._advance = shot, places, look, advance
-        first, second = shot.beginning()  # the same for all chunks, so that they are alike
+        first, second = shot.beginning()  # the same for all chunks, so that all are treated alike
         lights = len(second.lights)
         self.forward, self._backward = (ShotDenoiser(shot.shape, method, lights, share=0.5) for _ in range(2))
         for denoiser in (self.forward, self._backward):
@@ -48,18 +48,18 @@ class ShotWalk:
 
     @property
     def cuts(self) -> list[int]:
-        """Those of the shot that lie within the walk."""
+        """The cuts of the shot inside the walk."""
         return [cut - self._places.start for cut in sorted(self._shot.cuts) if cut in self._places[1:]]
 
     def __len__(self) -> int:
         return len(self._places)
 
     def item(self, index: int) -> Item:
-        """All of a frame, and its index in the shot."""
+        """Return the index of a frame in the shot, and the frame."""
         return self._places[index], self._shot.read(self._places[index])
 
     def to_next(self, index: int, item: Item, later: Item) -> Picture:
-        """The motion to the next frame, from the file or the cameras where they tell it."""
+        """Return the motion to the next frame, from the file or the cameras if they give it."""
         given = self._shot.motion_to_next(item[1])
         return motion_to_next(item[1].frame, later[1].frame) if given is None else given
 
@@ -68,7 +68,7 @@ class ShotWalk:
         (self._backward if backward else self.forward).reset()
 
     def estimates(self, item: Item, motion: Picture | None, *, backward: bool) -> Mapping[Channels, Estimate]:
-        """What a filter makes of each part of its next frame."""
+        """Filter the parts of the next frame of a direction."""
         index, source = item
         denoiser = self._backward if backward else self.forward
         if self._look and not backward:
@@ -82,6 +82,6 @@ class ShotWalk:
         return {key: Estimate(picture, denoiser.uncertainty(key)) for key, picture in made.items()}
 
     def composed(self, means: Mapping[Channels, Picture]) -> Denoised:
-        """The picture of the forward filter's last frame, from the means of its parts."""
+        """Return the picture of the forward filter's last frame, from the means of its parts."""
         assert self._parts is not None
         return self._parts.composed(means)

@@ -1,8 +1,8 @@
 """`TilePlan`: runs the passes of a filter tile by tile, and keeps the history of the whole image on the host.
 
-Each tile is a small image of its own on the device. What the next frame wants of it is copied to the host, and what the
-previous frame left is copied from there to where the tile's motion leads. Both are the same bits as in a whole frame:
-a pixel's arithmetic does not depend on where in the image, or in which image, it lies.
+Each tile is a separate small image on the device. The values that the next frame needs are copied to the host, and the
+values of the previous frame are copied from there for the place to which the tile's motion leads. All values are the
+same bits as in a whole frame, because a pixel's arithmetic does not depend on its place in the image.
 """
 
 from __future__ import annotations
@@ -41,11 +41,11 @@ class Step:
     ----------
     launch : Launch
     past : sequence of Resource
-        What it reads as the previous frame left it.
+        The resources of the previous frame that it reads.
     margin : int
-        Pixels around a tile whose motion it goes by.
+        The pass uses the motion of this many pixels around a tile.
     reach : Reach, optional
-        How far around the place that motion leads to it reads.
+        How far it reads around the place to which motion leads.
     """
 
     launch: Launch
@@ -55,7 +55,7 @@ class Step:
 
 
 class TilePlan:
-    """A pipeline made ready to run in tiles.
+    """A pipeline that is ready to run in tiles.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ class TilePlan:
     Raises
     ------
     DeviceError
-        If the device has no room, or its compiler refuses a kernel.
+        If the device does not have enough memory, or its compiler fails.
     """
 
     def __init__(self, tiling: Tiling, workplace: Workplace) -> None:
@@ -85,32 +85,32 @@ class TilePlan:
         self._results = HostPlanes(tiling.results, tiling.shape)
         self._stages = {name: stage for name, stage in stages(pipeline).items() if self._kept(stage)}
         self._frame_number = 0
-        self._copies: list[cl.Event] = []  # to and from the host's planes, which may be under way
+        self._copies: list[cl.Event] = []  # copies to and from the host's planes that may not have ended
 
     @property
     def stages(self) -> list[str]:
-        """What can be read after a frame."""
+        """Names of the stages that can be read after a frame."""
         return list(self._stages)
 
     @property
     def host_nbytes(self) -> int:
-        """Host memory held, in bytes."""
+        """Host memory in use, in bytes."""
         return self._before.nbytes + self._now.nbytes + self._results.nbytes
 
     @property
     def nbytes(self) -> int:
-        """Device memory held, in bytes; the user's arrays aside."""
+        """Device memory in bytes, without the user's arrays."""
         return self._buffers.nbytes + self._past.nbytes + (self._motion.size if self._motion else 0)
 
     def begin_frame(self, *, first: bool) -> None:
-        """Before the tiles of a frame; `first` where nothing is known of the past."""
+        """Prepare for the tiles of a frame; `first` means that there is no history."""
         self._wait()
         if first:
             self._frame_number = 0
             self._before.forget()
 
     def end_frame(self) -> None:
-        """After the tiles of a frame: they are the past of the next. Without it that frame has left nothing."""
+        """Make the frame the history of the next one. Without this call the frame has no effect."""
         self._wait()
         self._before, self._now = self._now, self._before
         self._frame_number += 1
@@ -122,9 +122,9 @@ class TilePlan:
         ----------
         tile : Tile
         motion : (h, w, 2 or 3) float32
-            Of the window.
+            The motion in the window.
         user : mapping of str to pyopencl.Buffer
-            The user's arrays, of the window.
+            The user's arrays in the window.
         """
         done: Events = []
         for step in self._steps:
@@ -137,12 +137,12 @@ class TilePlan:
         return done
 
     def stage(self, name: str) -> NDArray[np.float32]:
-        """One of `stages` of the last frame, as `Denoiser.stage` gives it."""
+        """Return one of `stages` of the last frame, as `Denoiser.stage` does."""
         stage = self._stages[name]
         return stage.decoded(self._kept(stage)[0].of(stage.resource, stage.quantity))
 
     def _kept(self, stage: Stage) -> list[HostPlanes]:
-        """What holds a stage of the last frame, which is the past of the next, if anything does."""
+        """Return the planes that contain a stage of the last frame, if any do."""
         return [each for each in (self._before, self._results) if each.holds(stage.resource, stage.quantity)]
 
     def _made_ready(self) -> Iterator[Step]:
@@ -161,15 +161,15 @@ class TilePlan:
                 yield Step(ready)
 
     def _windows(self, step: Step, tile: Tile, motion: Motion) -> list[PastWindow]:
-        """Where this pass has to look for the past of a tile."""
-        if step.reach is None or not self._frame_number:  # a past of which nothing is known is the same everywhere
+        """Return the windows on the previous frame that this pass reads for a tile."""
+        if step.reach is None or not self._frame_number:  # unknown history is the same everywhere
             return [PastWindow((0, 0), (0, 0), self._past_shape)]
         rows, columns = tile.around(step.margin)
         first = tile.rows.origin + rows.start, tile.columns.origin + columns.start
         return past_windows(motion[rows, columns], first, self._shape, self._past_shape, step.reach)
 
     def _run_at_once(self, step: Step, tile: Tile, user: UserBuffers, window: PastWindow) -> tuple[str, cl.Event]:
-        """Run a pass that needs one window on the past at the most."""
+        """Run a pass that needs at most one window on the previous frame."""
         self._upload(step, window)
         return self._enqueue(step, user, offset(tile, window))
 
@@ -186,14 +186,14 @@ class TilePlan:
     def _run_in_parts(
         self, step: Step, tile: Tile, motion: Motion, user: UserBuffers, windows: Sequence[PastWindow]
     ) -> Events:
-        """Run a pass once for every window on the past, and put its results together.
+        """Run a pass once for every window on the previous frame, and merge the results.
 
-        Each run has the motion of those pixels alone that it leads into this window; that of others is unknown. So a
-        pixel comes out as if nothing were known of its past in all runs but one at the most. A first run without any
-        motion tells what that is, and a byte that is another in any run is right there.
+        In each run, only the pixels whose motion leads into the window have motion; for all others it is unknown. So in
+        all runs except at most one, a pixel gets the result of unknown history. A first run without any motion gives
+        this result for comparison: a byte that differs from it in one run is the right one.
         """
         written = [self._memory(each.of, user) for each in step.launch.entry.writes]
-        before = [self._read(memory) for memory in written]  # of which the pass may read some
+        before = [self._read(memory) for memory in written]  # the pass may also read them
         done: Events = []
         base: list[Bytes] = []
         merged: list[Bytes] = []
@@ -214,7 +214,7 @@ class TilePlan:
         return done
 
     def _motion_into(self, window: PastWindow, step: Step, tile: Tile, motion: Motion) -> cl.Buffer:
-        """The motion of a window's readers, and NaN for all others."""
+        """Return the motion of a window's readers, and NaN for all other pixels."""
         led = np.full_like(motion, np.nan)
         around = tile.around(step.margin)
         if window.readers is not None:
@@ -232,7 +232,7 @@ class TilePlan:
         return values
 
     def _download(self, tile: Tile) -> None:
-        """Copy the history and the visible stages of a tile to the host."""
+        """Copy the values of a tile that are kept for the next frame, or only shown, to the host."""
         rows, columns = tile.around()
         size = rows.stop - rows.start, columns.stop - columns.start
         for planes in (self._now, self._results):
@@ -242,12 +242,12 @@ class TilePlan:
                 self._copies += planes.download(self._queue, resource, place, corner, size)
 
     def _wait(self) -> None:
-        """Have the host's planes be the host's again."""
+        """Wait until all copies to and from the host's planes have ended."""
         if self._copies:
             cl.wait_for_events(self._copies)
         self._copies = []
 
 
 def offset(tile: Tile, window: PastWindow) -> tuple[int, int]:
-    """Rows and columns from a pixel's place in a tile to its place in a window on the past."""
+    """Return the rows and columns from a pixel's place in a tile to its place in a window on the previous frame."""
     return tile.rows.origin - window.origin[0], tile.columns.origin - window.origin[1]

@@ -1,4 +1,4 @@
-"""`TiledDenoiser`: frames for which a device has no room, a part at a time; and which denoiser a frame needs."""
+"""`TiledDenoiser`: denoises frames that are too large for the device's memory. `denoiser_for` chooses a denoiser."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import pyopencl as cl
 from svgf_cl.denoiser import Denoiser
 from svgf_cl.device.arguments import check_filter, check_inputs, check_queue, check_shape, check_tuning, held
 from svgf_cl.device.array_checks import check_out
+from svgf_cl.device.events import times
 from svgf_cl.device.opencl_errors import mebibytes, opencl_errors
 from svgf_cl.device.process import check_process
 from svgf_cl.device.tiles import Tile
@@ -26,41 +27,35 @@ from svgf_cl.frame import ALPHA, Frame, Shape, extent
 from svgf_cl.plan import Workplace
 from svgf_cl.tile_plan import Events, TilePlan
 
-MOST_OF_MEMORY = 0.9  # of a device's: the driver, and what is shown on the screen, take some of it
+MOST_OF_MEMORY = 0.9  # of a device's memory: the driver and the screen need some of it
 NOT_BEGUN = (
-    "the past is kept, so the same frame may be given again; if this stays, make a new one with a lesser max_bytes"
+    "the history is kept, so the same frame may be given again; if this happens again, make a new one with a smaller "
+    "max_bytes"
 )
 
 
 class TiledDenoiser:
-    """Denoises frames for which a device has no room, with the same result as `Denoiser`, bit by bit.
+    """Denoises frames that are too large for the device's memory, with the same result as `Denoiser`, bit by bit.
 
-    It works on one tile of the frame after another. The past of the whole frame lies in host memory: what a tile needs
-    of it is copied to the device and back. So it takes longer, and host memory: see docs/conventions.md.
-
-    Threads may share one: a call waits for that of another thread to end. It may stand in a ``with``.
+    It works on one tile of the frame after another. The history of the whole frame is in host memory; the part that a
+    tile needs is copied to the device and back. So it takes more time, and host memory: see docs/conventions.md.
+    Threads, processes and ``with`` blocks are treated as by `Denoiser`.
 
     Parameters
     ----------
-    shape : (int, int)
-        (height, width) in pixels, each >= 1.
+    shape, settings, queue, tuning
+        As for `Denoiser`.
     inputs : Inputs
-        What all frames supply.
-    settings : Filter, optional
-        Which filter, and its parameters; `Kalman` by default.
-    queue : pyopencl.CommandQueue, optional
-        In-order queue to work on; by default one on the fastest working device.
-    tuning : Tuning, optional
-        How to cut the work on this device; by default what ``svgf-cl tune`` found best, else what suits most.
+        The fields of all frames.
     max_bytes : int, optional
-        Device memory that it may take; by default nine tenths of the device's.
+        Most device memory to use; by default nine tenths of the device's memory.
 
     Raises
     ------
     SvgfError
         If an argument is wrong.
     DeviceError
-        If not even the smallest tiles fit, or as `Denoiser`.
+        If not even the smallest tiles fit, or as in `Denoiser`.
     """
 
     def __init__(
@@ -82,11 +77,11 @@ class TiledDenoiser:
         limit = check_max_bytes(max_bytes, device)
         window = window_for(tiling, device, limit)
         self._arrays: UserArrays | None = UserArrays(held(self._queue), pinned=tuning.pinned_copies)
-        with opencl_errors(device, "TiledDenoiser", "make one with a lesser max_bytes"):
+        with opencl_errors(device, "TiledDenoiser", "make one with a smaller max_bytes"):
             at = Workplace(held(self._queue), tiling.layout(window), tuning)
             self._plan: TilePlan | None = TilePlan(tiling, at)
         self._reason = (
-            f"{extent(self._shape)} frames take {mebibytes(sum(tiling.whole()))} at once, {device.name} has "
+            f"{extent(self._shape)} frames need {mebibytes(sum(tiling.whole()))} at once, {device.name} has "
             f"{mebibytes(limit)} for them: working in {len(self._plan.tiles)} tiles of {extent(window)}"
         )
         self._picture = np.empty((*window, 3), np.float32)
@@ -106,29 +101,29 @@ class TiledDenoiser:
 
     @property
     def queue(self) -> cl.CommandQueue:
-        """The queue that it works on."""
+        """The queue that the denoiser uses."""
         return self._queue
 
     @property
     def reason(self) -> str:
-        """One line that says why it works in tiles, and in how many."""
+        """One line that says why it works in tiles, and how many there are."""
         return self._reason
 
     @property
     def tiles(self) -> int:
-        """How many tiles a frame takes."""
+        """Number of tiles of a frame."""
         with self._in_turn() as (plan, _):
             return len(plan.tiles)
 
     @property
     def nbytes(self) -> int:
-        """Device memory held, in bytes; the frame's arrays aside."""
+        """Device memory in bytes, without the frame's arrays."""
         with self._in_turn() as (plan, _):
             return plan.nbytes
 
     @property
     def host_nbytes(self) -> int:
-        """Host memory held for the past, in bytes."""
+        """Host memory for the history, in bytes."""
         with self._in_turn() as (plan, _):
             return plan.host_nbytes
 
@@ -138,19 +133,19 @@ class TiledDenoiser:
         Parameters
         ----------
         frame : Frame
-            Every field a numpy array of this denoiser's shape; the fields are those of its `inputs`.
+            Every field is a numpy array of this denoiser's shape; the fields are those of its `inputs`.
         out : (H, W, 3) float32 C-contiguous ndarray, optional
-            Where to put the result. It may not be the memory of a field.
+            The array for the result; (H, W, 4) if `color` has alpha. It must not share memory with a field.
 
         Returns
         -------
-        (H, W, 3) float32
-            Linear HDR radiance: `out` if given.
+        (H, W, 3) float32, or (H, W, 4) if `color` has alpha
+            Linear HDR radiance; `out` if given.
 
         Raises
         ------
         FrameError, ArgumentError, DeviceError
-            As `Denoiser.denoise`. The call counts as not made, and the past is kept.
+            As in `Denoiser.denoise`. The history is always kept.
         """
         if not isinstance(frame, Frame):
             raise SvgfError(f"denoise(frame): expected a Frame, got {type(frame).__name__}")
@@ -173,12 +168,12 @@ class TiledDenoiser:
         return result
 
     def reset(self) -> None:
-        """Forget the past, but keep kernels and memory: for a camera cut."""
+        """Discard the history, but keep kernels and memory: for a camera cut."""
         with self._in_turn():
             self._is_cut, self._events = True, []
 
     def close(self) -> None:
-        """Give memory back; no call but this one works afterwards."""
+        """Free the memory; afterwards only this call works."""
         with self._lock:
             self._plan, self._arrays, self._events = None, None, []
 
@@ -194,24 +189,21 @@ class TiledDenoiser:
         return f"<TiledDenoiser of {extent(self._shape)} pixels, {self._settings.name}, on {place}>"
 
     def profile(self) -> dict[str, float]:
-        """Milliseconds on the device of each pass of the last frame, all tiles together, in order."""
+        """Return the milliseconds on the device of each pass of the last frame, summed over all tiles, in order."""
         with self._in_turn():
-            if not self._queue.properties & cl.command_queue_properties.PROFILING_ENABLE:
-                raise SvgfError("profile(): the queue was made without PROFILING_ENABLE")
-            self._queue.finish()
             total: dict[str, float] = {}
-            for name, event in self._events:
-                total[name] = total.get(name, 0.0) + 1e-6 * (event.profile.end - event.profile.start)
+            for name, time in times(self._queue, self._events):
+                total[name] = total.get(name, 0.0) + time
             return total
 
     @property
     def stages(self) -> list[str]:
-        """Names that `stage` understands: what is kept for the next frame, or shown; none before the first."""
+        """Names for `stage`: those kept for the next frame, or only shown; empty before the first frame."""
         with self._in_turn() as (plan, _):
             return plan.stages if self._events else []
 
     def stage(self, name: str) -> np.ndarray:
-        """One of `stages` of the last frame, as `Denoiser.stage` gives it."""
+        """Return one of `stages` of the last frame, as `Denoiser.stage` does."""
         with self._in_turn() as (plan, _):
             known = self.stages
             if not isinstance(name, str) or name not in known:
@@ -222,7 +214,7 @@ class TiledDenoiser:
 
     @contextmanager
     def _in_turn(self) -> Iterator[tuple[TilePlan, UserArrays]]:
-        """Around what touches the device: one thread at a time, in the process that made it, before it is closed."""
+        """Use the device in a ``with`` block: one thread at a time, not after a fork, and not after `close`."""
         check_process()
         with self._lock:
             if self._plan is None or self._arrays is None:
@@ -234,7 +226,7 @@ class TiledDenoiser:
         given = frame.present()
         for name, value in given.items():
             if not isinstance(value, np.ndarray):
-                raise FrameError(name, "a numpy.ndarray, for frames in tiles lie in host memory", "a device array")
+                raise FrameError(name, "a numpy.ndarray, because frames in tiles are in host memory", "a device array")
         inputs = Inputs.of(frame)
         if inputs != self._inputs:
             raise ArgumentError("denoise(frame)", f"the fields {self._inputs}", str(inputs))
@@ -242,14 +234,16 @@ class TiledDenoiser:
             return
         check_out(out, frame.picture_shape)
         if not isinstance(out, np.ndarray):
-            raise ArgumentError("denoise(out)", "a numpy.ndarray, as frames in tiles are", "a device array")
+            raise ArgumentError(
+                "denoise(out)", "a numpy.ndarray, because frames in tiles are in host memory", "a device array"
+            )
         for name, value in given.items():
             if np.may_share_memory(out, value):
                 raise ArgumentError("denoise(out)", "memory of its own", f"that of {name}")
 
 
 def part_of(frame: Frame, name: str, tile: Tile) -> np.ndarray:
-    """What a frame's field holds of a tile's window, as kernels read it."""
+    """Return the part of a frame's field in a tile's window, as kernels read it."""
     part = as_read(name, frame.layer(name)[tile.window])
     assert isinstance(part, np.ndarray)
     return part
@@ -263,9 +257,9 @@ def denoiser_for(
     queue: cl.CommandQueue | None = None,
     max_bytes: int | None = None,
 ) -> Denoiser | TiledDenoiser:
-    """The denoiser for frames of this shape: one that works in tiles where whole frames do not fit on the device.
+    """Return a denoiser for frames of this shape; it works in tiles if whole frames do not fit on the device.
 
-    Both give the same pictures. Parameters are those of `TiledDenoiser`.
+    Both kinds give the same pictures. The parameters are those of `TiledDenoiser`.
     """
     queue, filter_ = check_queue(queue), DEFAULT() if settings is None else check_filter(settings)
     alignment = best_tuning(queue.device).row_alignment
@@ -278,7 +272,7 @@ def denoiser_for(
 
 
 def check_max_bytes(max_bytes: int | None, device: cl.Device) -> int:
-    """Most of a device's memory for None; `SvgfError` for anything that is no number of bytes."""
+    """Return the number of bytes, or for None most of the device's memory; raise `SvgfError` for any other value."""
     if max_bytes is None:
         return int(MOST_OF_MEMORY * device.global_mem_size)
     if not isinstance(max_bytes, int) or isinstance(max_bytes, bool) or max_bytes < 1:
@@ -287,7 +281,7 @@ def check_max_bytes(max_bytes: int | None, device: cl.Device) -> int:
 
 
 def window_for(tiling: Tiling, device: cl.Device, limit: int) -> Shape:
-    """The shape of the windows; `DeviceError` where the device has no room for any."""
+    """Return the shape of the windows; raise `DeviceError` if no window fits on the device."""
     window = tiling.window(limit, device.max_mem_alloc_size)
     if window is None:
         raise DeviceError(

@@ -1,8 +1,9 @@
-"""The benchmark: every kernel and the whole frame, on every working device, beside the device's ceilings and the error.
+"""The benchmark: times every kernel and the whole frame on every working device.
 
-`suite` says what is timed, under which name, and runs it; `rig` times one denoiser; `cost` counts bytes and operations
-of a kernel from its equation, `ceilings` measures what the device can do, `roofline` sets one against the other;
-`results` keeps it all as JSON, `compare` and `report` show it. How to read it: docs/benchmarks.md.
+It also measures the device's limits and the filter's error. `cases` lists and names what is timed, `suite` runs it, and
+`rig` times one denoiser. `cost` counts the bytes and operations of a kernel from its equation, `ceilings` measures the
+device's limits, and `roofline` compares the two. `results` stores all of it as JSON; `compare` and `report` show it.
+docs/benchmarks.md says how to read the results.
 """
 
 from svgf_cl.bench.error import error_to_oracle

@@ -1,9 +1,9 @@
-"""What is timed, and under which name.
+"""Lists the cases to time, and names their benchmarks.
 
-Names: ``svgf.<row>.<width>x<height>``, with the filter's name in front. The row is a pass (``demodulate``,
-``atrous.3``), ``atrous`` (all levels), ``frame``, ``frame.numpy``, ``enqueue``, or ``start.cold`` and ``start.warm``. A
-frame with other settings says which: ``svgf.frame.iterations3.1280x720``. A device's ceilings are
-``ceiling.copy.<bytes>`` and ``ceiling.multiply``.
+A name is ``<filter>.<row>.<width>x<height>``. The row is a pass (``demodulate``, ``atrous.3``), ``atrous`` (all
+levels), ``frame``, ``frame.numpy``, ``enqueue``, or ``start.cold`` and ``start.warm``. For a frame with other settings
+the name contains them: ``svgf.frame.iterations3.1280x720``. A device's ceilings are ``ceiling.copy.<bytes>``,
+``ceiling.load.<offset>`` and ``ceiling.multiply``.
 """
 
 from __future__ import annotations
@@ -24,30 +24,31 @@ from svgf_cl.frame import Shape, extent
 from svgf_cl.settings import Range, domains
 
 SHAPES: tuple[Shape, ...] = ((180, 320), (720, 1280), (1080, 1920), (2160, 3840))
-# Where it is not the size that varies: cores, iterations, signals, the first frame of a process.
+# The size for cases that vary something else: cores, iterations, signals, the first frame of a process.
 USUAL_SHAPE: Shape = (720, 1280)
 
 STARTS: tuple[Row, ...] = (("start", "cold"), ("start", "warm"))
 
-# What `there_and_back` supplies.
+# The fields that `there_and_back` supplies.
 ROOM = Inputs(motion=3, albedo=True, id=True)
 ROOM_SPLIT = replace(ROOM, signals=(DIRECT, INDIRECT))
 
 
 @dataclass(frozen=True)
 class Case:
-    """One denoiser to be timed.
+    """One denoiser to time.
 
     Parameters
     ----------
     shape : (int, int)
     settings : Filter
     inputs : Inputs
-        What its frames supply.
+        The fields of its frames.
     cores : int, optional
-        The machine's cores to use; all where None.
+        Number of the machine's cores to use; None for all.
     variant : str
-        What is unusual about it, for its names; only its whole frame is timed. Empty for the usual, timed by pass.
+        The name of its special setting, for the benchmark's name; only the whole frame is timed then. Empty for the
+        usual case, of which every pass is timed.
     """
 
     shape: Shape
@@ -58,30 +59,30 @@ class Case:
 
     @property
     def rows(self) -> list[Row]:
-        """All that a `Rig` samples of it: passes, all levels of one, and whole frames."""
+        """All rows that a `Rig` samples: passes, all levels of a pass together, and whole frames."""
         if self.variant:
             return [FRAME]
         paths = [entry.path for entry in self.passes]
         return [*paths, *levels_together(paths), FRAME, FRAME_NUMPY, ENQUEUE]
 
     def name(self, row: Row) -> str:
-        """The benchmark's name."""
+        """Return the benchmark's name."""
         words = [self.settings.name, *row, self.variant, extent(self.shape)]
         return ".".join(word for word in words if word)
 
     def costs(self) -> dict[Row, Cost]:
-        """What each pass costs."""
+        """Return the cost of each pass for the whole image."""
         pixels = self.shape[0] * self.shape[1]
         return {entry.path: cost(entry) * pixels for entry in self.passes}
 
     @property
     def passes(self) -> tuple[Pass, ...]:
-        """Its passes."""
+        """The filter's passes."""
         return self.settings.pipeline(self.inputs).passes
 
 
 def cases(device: cl.Device, shapes: Sequence[Shape], settings: Filter) -> Iterator[Case]:
-    """All that is timed on a device: every size, and what else a frame's time is followed over."""
+    """Yield all cases for a device: every size, then iterations, signals and cores."""
     for shape in shapes:
         yield Case(shape, settings)
     span = domains(type(settings)).get("iterations")

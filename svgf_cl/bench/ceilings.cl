@@ -1,16 +1,16 @@
-// What a device can do at best, for the roofline: copy memory, load from the nearest cache, and multiply and add.
+// Measures a device's limits for the roofline: copies of memory, loads from the nearest cache, and multiply-adds.
 //
-//   copy       target[i] = source[i], all of it `repeats` times;  item g takes the vectors g * first + k * step,
+//   copy       target[i] = source[i] for all i, `repeats` times;  item g copies the vectors g * first + k * step,
 //              k < count
-//   load       CHAINS sums of vectors from as many streams, each `offset` floats off where a vector begins,
-//              `count` times
+//   load       CHAINS sums of vectors from as many streams, `count` times; each load begins `offset` floats after the
+//              begin of a vector
 //   multiply   CHAINS independent sums a := a * b + c per lane, `count` times
 //
 // in   source;  out  target
-// A CPU's item takes neighbouring vectors (step 1), a GPU's takes every so-manieth: what each of them fetches best.
-// No `restrict`: a compiler that knew source and target apart might do the repeats but once.
+// An item on a CPU copies neighbouring vectors (step 1), an item on a GPU every step-th one: each is the fastest there.
+// No `restrict`: a compiler that knows that source and target do not overlap might copy only once.
 //
-// Streams lie 33 cache lines apart, so that they all fit into the nearest cache, each in other sets of it.
+// Streams are 33 cache lines apart, so that all fit into the nearest cache, each in different sets of it.
 //
 // Macros set by the host: VW 1 | 4 | 8 | 16 (floats of a vector), CHAINS.
 
@@ -27,7 +27,7 @@ typedef CAT(float, VW) floatv;
 #endif
 
 #define STREAM (33 * 16)  // floats from one stream to the next
-#define VECTORS 16        // of a stream, in turn
+#define VECTORS 16        // vectors of a stream that are loaded in turn
 
 __kernel void copy(const int first, const int step, const int count, const int repeats, __global const floatv *source,
                    __global floatv *target) {

@@ -1,4 +1,4 @@
-"""What a device can do at best: copy memory, by size; load from its nearest cache; multiply and add."""
+"""Measures a device's limits: how fast it copies memory, loads from its nearest cache, and multiplies and adds."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ import pyopencl as cl
 from svgf_cl.device.programs import OPTIONS
 from svgf_cl.device.tuning import best_tuning
 
-# Source and target together: from a core's own cache to far out of every cache.
+# Bytes of source and target together: from the size of a core's own cache to far beyond every cache.
 WORKING_SETS = tuple(2**power for power in range(16, 30))
-COPIED = 2**28  # bytes read and written per sample, at least: launching is nothing beside it
-CHAINS = 12  # sums in flight: a core has two units, each with a result every cycle after four
-# Work-items of a compute unit: enough to keep a GPU's units full, and to share a CPU's work evenly.
+COPIED = 2**28  # bytes read and written per sample, at least: then the launch takes a negligible time
+CHAINS = 12  # sums in flight: a core has two units, each of which returns a result every cycle, four cycles later
+# Work-items for each compute unit: enough to fill a GPU's units, and to share a CPU's work evenly.
 GPU_ITEMS, CPU_ITEMS = 2048, 8
-COMPUTED = 4e-3  # seconds of a sample of loads or multiply-adds
-TRIES = 9  # to find out how many those are; the first ones are slow
-ALIGNED, OFFSET = 0, 1  # floats that a load begins off where vectors do
-SAMPLES = 3  # of each, every time
+COMPUTED = 4e-3  # seconds that a sample of loads or multiply-adds takes
+TRIES = 9  # to find the number of rounds for that; the first tries are slow
+ALIGNED, OFFSET = 0, 1  # distance in floats between the begin of a load and that of a vector
+SAMPLES = 3  # of each kind, in each call of `sample`
 
 
 @dataclass(frozen=True)
@@ -33,11 +33,11 @@ class Ceilings:
     Parameters
     ----------
     bandwidth : sequence of (int, float), bytes and bytes / s
-        Working set (source and target) and how fast it is copied at best: bytes read plus bytes written.
+        Working set (source and target), and the highest speed of a copy: bytes read plus bytes written.
     aligned_loads, offset_loads : float, bytes / s
-        Loaded from the nearest cache in vectors that begin where a vector does, and one float beside.
+        Speed of loads from the nearest cache, in aligned vectors, and in vectors that begin one float later.
     flops : float, 1 / s
-        Single precision operations, a multiply-add counted as two.
+        Single precision operations; a multiply-add counts as two.
     """
 
     bandwidth: Sequence[tuple[int, float]]
@@ -46,13 +46,13 @@ class Ceilings:
     flops: float
 
     def bandwidth_at(self, working_set: float) -> float:
-        """Bytes per second for a working set in bytes, interpolated over its logarithm."""
+        """Return bytes per second for a working set in bytes, interpolated over its logarithm."""
         sizes, speeds = zip(*self.bandwidth, strict=True)
         return float(np.interp(np.log(working_set), np.log(sizes), speeds))
 
 
 class CeilingBench:
-    """The ceilings' kernels on one device, to be sampled beside what they bound.
+    """The kernels that measure the limits of one device; they are sampled during the same run as the filter's passes.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class CeilingBench:
     Attributes
     ----------
     count : int
-        Rounds of `load` and `multiply`: so many that a sample takes long enough.
+        Rounds of `load` and `multiply`: enough for a sample of about `COMPUTED` seconds.
     """
 
     def __init__(self, queue: cl.CommandQueue) -> None:
@@ -75,7 +75,7 @@ class CeilingBench:
         source = (resources.files("svgf_cl.bench") / "ceilings.cl").read_text(encoding="utf-8")
         program = cl.Program(queue.context, source)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", cl.CompilerWarning)  # drivers report success in their log
+            warnings.simplefilter("ignore", cl.CompilerWarning)  # drivers write to their log even on success
             program.build([*OPTIONS, f"-DVW={self._width}", f"-DCHAINS={CHAINS}"])
         self._copy, self._load, self._multiply = (cl.Kernel(program, name) for name in ("copy", "load", "multiply"))
         room = min(max(WORKING_SETS) // 2, device.max_mem_alloc_size)
@@ -88,7 +88,7 @@ class CeilingBench:
         self.count = max(1, round(self.count * COMPUTED / fastest))
 
     def copy(self, working_set: int) -> float:
-        """Seconds to read and write each byte of a working set (one of `working_sets`) once, on average."""
+        """Return the mean seconds to read and write each byte of a working set (one of `working_sets`) once."""
         repeats = max(1, COPIED // working_set)
         count = working_set // (8 * self._width * self._items)
         first, step = (1, self._items) if self._on_gpu else (count, 1)
@@ -96,25 +96,25 @@ class CeilingBench:
         return self._seconds(self._copy, *scalars, self.source, self.target) / repeats
 
     def load(self, offset: int) -> float:
-        """Seconds to load `loaded` bytes; `ALIGNED`, or `OFFSET` from where vectors begin."""
+        """Return the seconds to load `loaded` bytes; `offset` is `ALIGNED` or `OFFSET`."""
         return self._seconds(self._load, np.int32(self.count), np.int32(offset), self.source, self.target)
 
     def multiply(self) -> float:
-        """Seconds for `operations` floating-point operations."""
+        """Return the seconds for `operations` floating-point operations."""
         return self._seconds(self._multiply, np.int32(self.count), np.float32(0.5), np.float32(1), self.target)
 
     @property
     def operations(self) -> int:
-        """What `multiply` computes."""
+        """Number of operations that `multiply` computes."""
         return 2 * CHAINS * self._width * self._items * self.count
 
     @property
     def loaded(self) -> int:
-        """What `load` loads."""
+        """Number of bytes that `load` loads."""
         return 4 * CHAINS * self._width * self._items * self.count
 
     def _whole(self, working_set: int) -> int:
-        """The largest working set up to this one that is the same number of vectors for every work-item."""
+        """Return the largest working set up to this one that gives every work-item the same number of vectors."""
         unit = 8 * self._width * self._items
         return working_set // unit * unit
 
@@ -125,7 +125,7 @@ class CeilingBench:
 
 
 class CeilingSamples:
-    """What was sampled of one device's ceilings.
+    """The samples of one device's limits.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ class CeilingSamples:
         self._multiplications: list[float] = []
 
     def sample(self) -> None:
-        """Take a few samples of each."""
+        """Take a few samples of each kind."""
         for _ in range(SAMPLES):
             for size, samples in self._copies.items():
                 samples.append(self._bench.copy(size))
@@ -159,7 +159,7 @@ class CeilingSamples:
         )
 
     def named(self) -> Iterator[tuple[str, list[float], dict[str, int]]]:
-        """Each benchmark's name, its samples in s, and what a sample moves or computes."""
+        """Yield each benchmark's name, its samples in s, and the bytes or operations of a sample."""
         for size, seconds in self._copies.items():
             yield f"ceiling.copy.{size}", seconds, {"bytes": size}
         for offset, seconds in self._loads.items():

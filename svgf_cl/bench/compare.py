@@ -1,4 +1,4 @@
-"""Two runs side by side: ratios of medians, and what keeps them from being comparable."""
+"""Compares two runs: ratios of medians, and differences that make the runs hard to compare."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Key = tuple[str, str, str]
 
 
 def comparison(old: Run, new: Run) -> Table:
-    """A row for each benchmark that both ran, with how many times faster the new one is."""
+    """Return a table of the benchmarks that both runs have, with how many times faster the new run is."""
     before, after = medians(old), medians(new)
     rows, ratios = [], []
     for key in after:
@@ -26,17 +26,17 @@ def comparison(old: Run, new: Run) -> Table:
 
 
 def differences(old: Run, new: Run) -> list[str]:
-    """What else differs: devices, drivers, ceilings, and benchmarks that only one of them ran."""
+    """Return what else differs: devices, drivers, tunings, and benchmarks that only one run has."""
     return [*device_differences(old, new), *name_differences(old, new)]
 
 
 def medians(run: Run) -> dict[Key, float]:
-    """Seconds by name, OpenCL implementation and clock."""
+    """Return the median seconds by name, OpenCL implementation and clock."""
     return {(result.name, run.platforms[result.device], result.clock): result.median for result in run.results}
 
 
 def device_differences(old: Run, new: Run) -> Iterator[str]:
-    """A line for each implementation whose device or driver is another, or that one run lacks."""
+    """Yield a line for each implementation whose device, driver or tuning differs, or that one run lacks."""
     before, after = by_platform(old), by_platform(new)
     for platform in sorted(before.keys() | after.keys()):
         was, is_ = before.get(platform), after.get(platform)
@@ -49,7 +49,7 @@ def device_differences(old: Run, new: Run) -> Iterator[str]:
 
 
 def name_differences(old: Run, new: Run) -> Iterator[str]:
-    """A line for each side that ran what the other did not."""
+    """Yield a line for each run that has benchmarks that the other lacks."""
     before, after = ({result.name for result in run.results} for run in (old, new))
     if before - after:
         yield f"only in the old run: {', '.join(sorted(before - after))}"
@@ -58,5 +58,5 @@ def name_differences(old: Run, new: Run) -> Iterator[str]:
 
 
 def by_platform(run: Run) -> dict[str, DeviceRecord]:
-    """The devices by OpenCL implementation."""
+    """Return the devices by OpenCL implementation."""
     return {device.platform: device for device in run.devices}

@@ -1,6 +1,6 @@
-"""The process confined to some of the machine's cores, to see how time falls with their number.
+"""Restricts the process to some of the machine's cores, to measure how time falls with their number.
 
-OpenCL's device fission does not serve: on one compute unit of two, Intel's runtime was seen to keep two threads busy.
+OpenCL's device fission cannot do this: on one compute unit of two, Intel's runtime kept two threads busy.
 """
 
 from __future__ import annotations
@@ -10,11 +10,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-TASKS = Path("/proc/self/task")  # of Linux: its threads, the driver's too
+TASKS = Path("/proc/self/task")  # on Linux: the process's threads, including the driver's
 
 
 def core_counts() -> list[int]:
-    """1, 2, 4 and so on up to all cores that this process may use; none where the system cannot confine it."""
+    """Return 1, 2, 4 and so on up to all cores that this process may use; empty if the system cannot restrict it."""
     if not TASKS.exists():
         return []
     cores = len(os.sched_getaffinity(0))
@@ -23,7 +23,7 @@ def core_counts() -> list[int]:
 
 @contextmanager
 def confined(count: int) -> Iterator[None]:
-    """Let all threads run on `count` cores only, until the block ends."""
+    """Restrict all threads to `count` cores in a ``with`` block."""
     every = os.sched_getaffinity(0)
     confine(set(sorted(every)[:count]))
     try:
@@ -33,7 +33,7 @@ def confined(count: int) -> Iterator[None]:
 
 
 def confine(cores: set[int]) -> None:
-    """Let all threads run on these cores only."""
+    """Restrict all threads to these cores."""
     for task in TASKS.iterdir():
-        with suppress(ProcessLookupError):  # it has ended meanwhile
+        with suppress(ProcessLookupError):  # the thread has ended meanwhile
             os.sched_setaffinity(int(task.name), cores)

@@ -1,7 +1,7 @@
-"""What a pass must at least move, load and compute per pixel, as its filter declares it.
+"""Computes how much a pass must at least move, load and compute per pixel, as its filter declares it.
 
-Bytes: every plane a pass needs is read once and every plane it makes is written once; neighbours come from a cache.
-Loads: every neighbour is loaded from there. Operations: `svgf_cl.filters.operations`.
+Bytes: every plane that a pass needs is read once, and every plane that it makes is written once. Neighbours come from a
+cache. Loads: every neighbour is loaded from there. Operations: see `svgf_cl.filters.operations`.
 """
 
 from __future__ import annotations
@@ -14,17 +14,17 @@ from svgf_cl.filters.pipeline import Pass, Use, spacing_of
 
 @dataclass(frozen=True)
 class Loads:
-    """Bytes loaded into registers; of a pixel, or of an image.
+    """Bytes loaded into registers, for a pixel or an image.
 
-    A vector of neighbouring pixels that begins where vectors do is aligned. One that begins beside lies in two lines of
-    the cache, and many CPUs take two or three times as long to load it.
+    A vector of neighbouring pixels is aligned if it begins where a cache line does. Any other vector lies in two cache
+    lines, and many CPUs take two or three times as long to load it.
 
     Parameters
     ----------
     aligned : float
-        In vectors that begin where a cache line does.
+        Bytes in aligned vectors.
     offset : float
-        In vectors that begin elsewhere.
+        Bytes in other vectors.
     """
 
     aligned: float = 0.0
@@ -38,13 +38,13 @@ class Loads:
 
     @property
     def bytes(self) -> float:
-        """Both kinds."""
+        """Bytes of both kinds."""
         return self.aligned + self.offset
 
 
 @dataclass(frozen=True)
 class Cost:
-    """Bytes moved, bytes loaded and floating-point operations; of a pixel, or of an image."""
+    """Bytes moved, bytes loaded and floating-point operations, for a pixel or an image."""
 
     bytes: float
     loads: Loads
@@ -55,15 +55,15 @@ class Cost:
 
 
 def cost(entry: Pass) -> Cost:
-    """What a pass costs per pixel."""
+    """Return the cost of a pass per pixel."""
     moved = sum(use.quantity.nbytes / spacing_of(each) ** 2 for each in entry.accesses for use in each.uses)
     loaded = sum((loads(use) for each in entry.reads for use in each.uses), Loads())
-    share = 1 / entry.spacing**2  # of the image's pixels, which it writes
+    share = 1 / entry.spacing**2  # the share of the image's pixels that the pass writes
     return Cost(moved, loaded * share, entry.operations * share)
 
 
 def loads(use: Use) -> Loads:
-    """What a pass loads of a quantity per pixel."""
+    """Return how much a pass loads of a quantity per pixel."""
     offsets = use.taps.offsets
     aligned = 0 if use.taps.follow_motion else sum(dx % WIDEST_VECTOR == 0 for dx, _ in offsets)
     return Loads(aligned, len(offsets) - aligned) * use.quantity.nbytes

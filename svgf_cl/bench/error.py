@@ -1,4 +1,4 @@
-"""The error that stands beside every speed: the whole filter on a device against the float64 oracle."""
+"""Measures the error that is reported with every speed: the whole filter on a device against the float64 oracle."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ ERROR_SHAPE = (90, 160)  # the oracle is slow
 def error_to_oracle(
     settings: Filter, *, signals: int = 1, frames: int = 6, queue: cl.CommandQueue | None = None
 ) -> tuple[float, float]:
-    """Greatest and root-mean-square difference between device and oracle, relative to the picture's mean.
+    """Return the greatest and the root-mean-square difference of device and oracle, relative to the picture's mean.
 
-    Both denoise the same sequence from its first frame on, each with its own history; both figures are over all of it.
+    Both denoise the same sequence from its first frame on, each with its own history. Both errors are over all frames.
     """
     den, oracle = Denoiser(ERROR_SHAPE, settings=settings, queue=queue), oracle_of(settings, ERROR_SHAPE)
     errors = []

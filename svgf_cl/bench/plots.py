@@ -1,4 +1,4 @@
-"""The plots of a run; each draws on axes that it is given, so that report and summary show the same."""
+"""Draws the plots of a run. Each function draws on given axes, so that report and summary show the same plots."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from svgf_cl.bench.scaling import Series, series
 
 Draw = Callable[[Axes], None]
 
-# Okabe and Ito's colours, told apart by all eyes and on dark and light ground.
+# Okabe and Ito's colours: colour-blind people can distinguish them, on dark and light backgrounds.
 COLORS = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#56B4E9", "#CC79A7", "#F0E442", "#999999")
 
 
 def plots(run: Run) -> dict[str, Draw]:
-    """What can be drawn of a run, by title."""
+    """Return the functions that draw a run's plots, by title."""
     found: dict[str, Draw] = {}
     if bars := frame_parts(run):
         found["A frame, pass by pass"] = lambda axes: draw_frames(axes, bars)
@@ -34,12 +34,12 @@ def plots(run: Run) -> dict[str, Draw]:
 
 
 def bind(draw: Callable[..., None], *arguments: object) -> Draw:
-    """The drawing function of these arguments, for axes to come."""
+    """Return a function that draws these arguments on the axes that it gets."""
     return lambda axes: draw(axes, *arguments)
 
 
 def frame_parts(run: Run) -> dict[str, dict[tuple[str, str], float]]:
-    """Milliseconds per megapixel of every pass, by size and implementation; passes by their kernel and their name."""
+    """Return milliseconds per megapixel by size and implementation, and then by each pass's kernel and name."""
     found: dict[str, dict[tuple[str, str], float]] = {}
     for device in run.devices:
         for result in run.of(device, clock=EVENT, variant=""):
@@ -52,7 +52,7 @@ def frame_parts(run: Run) -> dict[str, dict[tuple[str, str], float]]:
 
 
 def draw_frames(axes: Axes, bars: dict[str, dict[tuple[str, str], float]]) -> None:
-    """A stacked bar for each size: equally long bars mean that time is linear in pixels."""
+    """Draw a stacked bar for each size; bars of equal length mean that time is linear in pixels."""
     passes = list(dict.fromkeys(each for bar in bars.values() for each in bar))
     kernels = list(dict.fromkeys(kernel for kernel, _ in passes))  # all levels in one colour
     left = np.zeros(len(bars))
@@ -68,14 +68,14 @@ def draw_frames(axes: Axes, bars: dict[str, dict[tuple[str, str], float]]) -> No
 
 
 def roofline_rows(run: Run, device: DeviceRecord) -> list[Result]:
-    """Rows with a bound at the largest size timed, levels together."""
+    """Return the results that have a bound, at the largest size, with all levels of a pass together."""
     found = [r for r in run.of(device, clock=EVENT, variant="") if r.roofline and r.facts["level"] is None]
     largest = max((r.facts["width"] * r.facts["height"] for r in found), default=0)
     return [r for r in found if r.facts["width"] * r.facts["height"] == largest]
 
 
 def draw_roofline(axes: Axes, ceilings: Ceilings, rows: Sequence[Result]) -> None:
-    """Operations per second over operations per byte, below the roof of bandwidth and peak."""
+    """Draw operations per second over operations per byte, and the roofline of bandwidth and peak."""
     intensity = np.logspace(-1.5, 2.5, 100)
     peak = ceilings.flops
     working_set = rows[0].facts["bytes"]
@@ -100,7 +100,7 @@ def draw_roofline(axes: Axes, ceilings: Ceilings, rows: Sequence[Result]) -> Non
 
 
 def draw_pixels(axes: Axes, lines: Sequence[Series]) -> None:
-    """Time per pixel: a flat line means that time is linear."""
+    """Draw time per pixel; a flat line means that time is linear in pixels."""
     axes.set_prop_cycle(color=COLORS)
     for line in lines:
         per = 1e9 * np.array(line.seconds) / np.array(line.over)
@@ -112,7 +112,7 @@ def draw_pixels(axes: Axes, lines: Sequence[Series]) -> None:
 
 
 def draw_iterations(axes: Axes, lines: Sequence[Series]) -> None:
-    """Time over a-trous levels."""
+    """Draw time over the number of a-trous levels."""
     axes.set_prop_cycle(color=COLORS)
     for line in lines:
         axes.plot(line.over, 1e3 * np.array(line.seconds), "o-", label=line.device.platform)
@@ -124,7 +124,7 @@ def draw_iterations(axes: Axes, lines: Sequence[Series]) -> None:
 
 
 def draw_cores(axes: Axes, lines: Sequence[Series]) -> None:
-    """Speed over cores, against the ideal."""
+    """Draw speed over the number of cores, beside the ideal."""
     axes.set_prop_cycle(color=COLORS)
     most = max(line.over[-1] for line in lines)
     axes.plot([1, most], [1, most], ":", color=COLORS[-1], label="ideal")
@@ -137,7 +137,7 @@ def draw_cores(axes: Axes, lines: Sequence[Series]) -> None:
 
 
 def summary(run: Run) -> Figure:
-    """All plots on one page."""
+    """Return a figure with all plots."""
     drawings = plots(run)
     columns = 2
     rows = max(1, -(-len(drawings) // columns))

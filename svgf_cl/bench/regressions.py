@@ -1,4 +1,4 @@
-"""The gate of ``svgf-cl bench``: which benchmarks of the project became slower than an earlier run allows."""
+"""Checks for ``svgf-cl bench --fail-above``: which benchmarks became slower than in an earlier run."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from svgf_cl.gate import Check
 
 
 def checks(old: Run, new: Run, ratio: float) -> list[Check]:
-    """Hold each benchmark that both runs have against `ratio`, new time over old.
+    """Check for each benchmark that both runs have that new time over old time is not above `ratio`.
 
     Benchmarks are matched by name and OpenCL implementation.
 
     Raises
     ------
     SvgfError
-        If the runs have no such benchmark in common: nothing was checked then.
+        If the runs have no such benchmark in common, so that there is nothing to check.
     """
     before, after = gated(old), gated(new)
     shared = [key for key in after if key in before]
@@ -32,13 +32,13 @@ def checks(old: Run, new: Run, ratio: float) -> list[Check]:
 
 
 def gated(run: Run) -> dict[Key, Result]:
-    """Find what a change of the project can make slower, each by the clock that says most.
+    """Return the benchmarks that a change of the project can make slower, each by its most reliable clock.
 
-    These are the filters' passes and frames. Ceilings belong to the machine. Start times are left out: a cold start has
-    one sample and a warm one three, and they mostly tell what the driver's compiler and the disk do.
+    These are the filters' passes and frames. Ceilings depend on the machine only. Start times are left out, because a
+    cold start has one sample and a warm start three, and both mostly depend on the driver's compiler and the disk.
 
-    Event time is taken where there is one. Host time adds launching and waiting, which the operating system disturbs.
-    It counts where it is all there is: calls with numpy arrays, and what a frame costs the calling thread.
+    The clock is event time if there is one. Host time also contains launching and waiting, which the operating system
+    disturbs. It is used where it is the only time: calls with numpy arrays, and the time until a call returns.
     """
     own = [result for result in run.results if belongs(result.name)]
     timed = {(result.name, result.device) for result in own if result.clock == EVENT}
@@ -50,17 +50,17 @@ def gated(run: Run) -> dict[Key, Result]:
 
 
 def belongs(name: str) -> bool:
-    """Whether a benchmark is a pass or frame of a filter."""
+    """Whether a benchmark is a pass or a frame of a filter."""
     filter_, row, *_ = [*name.split("."), ""]
     return filter_ in FILTERS and row != "start"
 
 
 def complaint(old: Result, new: Result, ratio: float) -> str:
-    """Say how much slower it became; nothing unless the slowdown lies beyond the spread of both runs.
+    """Return how much slower a benchmark became; empty if the slowdown is within the spread of both runs.
 
-    The new run's lower quartile has to be above `ratio` times the old run's upper one: three quarters of the new
-    samples are then slower than three quarters of the old ones by more than `ratio`. The ratio of the medians, which is
-    what is told, is then above `ratio` too.
+    The new run's lower quartile must be above `ratio` times the old run's upper quartile. Then three quarters of the
+    new samples are slower than three quarters of the old ones by more than `ratio`, and so is the ratio of the medians,
+    which is reported.
     """
     if new.stats.q1 <= ratio * old.stats.q3:
         return ""
@@ -69,6 +69,6 @@ def complaint(old: Result, new: Result, ratio: float) -> str:
 
 
 def names(found: dict[Key, Result]) -> str:
-    """A few of the benchmarks' names and where they ran, for an error."""
+    """Return a few of the benchmarks' names and their implementations, for an error."""
     shown = [f"{name} on {platform}" for name, platform, _ in found]
     return ", ".join(shown[:2]) + (f" and {len(shown) - 2} more" if len(shown) > 2 else "") or "none"

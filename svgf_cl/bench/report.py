@@ -1,4 +1,4 @@
-"""The report: one HTML page that needs nothing else, and a picture that sums it up."""
+"""Writes the report: one HTML page that needs no other file, and a picture with all plots."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from svgf_cl.bench.results import Run
 from svgf_cl.bench.tables import Table, benchmark_table, device_table, memory_table
 from svgf_cl.io.atomic import written_whole
 
-# Text and lines take the page's own colour, so that they can be read on dark and on light ground.
+# Placeholder for the page's own text colour, so that plots are legible on dark and light backgrounds.
 INK = "#010203"
 STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",
@@ -42,20 +42,20 @@ class Section:
     ----------
     title : str
     figure : Markup
-        Such as `inline_svg` or `inline_png` give; may be empty.
+        The result of `inline_svg` or `inline_png`; may be empty.
     tables : sequence of Table
     notes : sequence of str
         Paragraphs of text.
     """
 
     title: str
-    figure: Markup = Markup()  # noqa: RUF009  # cannot be changed
+    figure: Markup = Markup()  # noqa: RUF009  # immutable
     tables: Sequence[Table] = ()
     notes: Sequence[str] = ()
 
     @property
     def is_empty(self) -> bool:
-        """Whether there is nothing to show; a table without rows is nothing."""
+        """Whether there is nothing to show; a table without rows does not count."""
         return not (self.figure or self.notes or any(table.rows for table in self.tables))
 
 
@@ -71,7 +71,7 @@ def write(
     old : Run, optional
         An earlier run to compare with.
     first, more : sequence of Section
-        What else to show, before and after the run's own sections.
+        Sections to show before and after the run's own ones.
     """
     page = render(run, [*first, *sections(run, old), *more])
     with written_whole(folder / "report.html") as aside:
@@ -81,7 +81,7 @@ def write(
 
 
 def render(run: Run, parts: Sequence[Section]) -> str:
-    """The page's HTML, without empty parts and tables."""
+    """Return the page's HTML, without empty parts and tables."""
     template = (resources.files("svgf_cl.bench") / "report.html").read_text(encoding="utf-8")
     return (
         Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
@@ -91,7 +91,7 @@ def render(run: Run, parts: Sequence[Section]) -> str:
 
 
 def sections(run: Run, old: Run | None) -> Iterator[Section]:
-    """The run's own sections, from top to bottom."""
+    """Yield the run's own sections, from top to bottom."""
     yield Section("Devices", tables=[device_table(run), memory_table(run)])
     for title, draw in plots.plots(run).items():
         yield Section(title, inline_svg(draw, title))
@@ -104,8 +104,8 @@ def sections(run: Run, old: Run | None) -> Iterator[Section]:
 
 
 def inline_svg(draw: plots.Draw, title: str) -> Markup:
-    """A plot as SVG to be put into the page, named for those who cannot see it."""
-    with rc_context(STYLE | {"svg.hashsalt": title}):  # the same names in every run, others in every plot
+    """Return a plot as SVG for the page, with a title for people who cannot see it."""
+    with rc_context(STYLE | {"svg.hashsalt": title}):  # ids inside are the same in every run, and differ between plots
         figure = Figure(figsize=(9, 4.5), layout="constrained")
         axes = figure.add_subplot()
         draw(axes)
@@ -117,6 +117,6 @@ def inline_svg(draw: plots.Draw, title: str) -> Markup:
 
 
 def inline_png(data: bytes, title: str) -> Markup:
-    """A PNG to be put into the page."""
+    """Return a PNG as HTML for the page."""
     encoded = base64.b64encode(data).decode("ascii")
     return Markup('<img src="data:image/png;base64,{}" alt="{}">').format(encoded, title)

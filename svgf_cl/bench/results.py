@@ -1,4 +1,4 @@
-"""What a run of the benchmark found, as JSON in pytest-benchmark's schema, so that its tools can read it too."""
+"""The results of a benchmark run, stored as JSON in pytest-benchmark's schema, so that its tools can read them too."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ from svgf_cl.io.atomic import read_json, write_text
 
 @dataclass(frozen=True)
 class DeviceRecord:
-    """A device that was timed: what its driver says of it, its ceilings, and the filter's error on it.
+    """A device that was timed: its driver's description, its limits, and the filter's error on it.
 
     Parameters
     ----------
     selector : str
-        What names it in ``PYOPENCL_CTX``.
+        The value of ``PYOPENCL_CTX`` that chooses it.
     platform, version, device, driver : str
     compute_units : int
     tuning : str
-        How the work is cut on it: the shipped choice, or what ``svgf-cl tune`` stored.
+        Its tuning: the default, or the one that ``svgf-cl tune`` stored.
     rms, largest : float
         Error against the float64 oracle, relative to the picture's mean.
     ceilings : Ceilings, optional
-        The limits measured in the same run; None where they were left out.
+        The limits measured in the same run; None if they were left out.
     """
 
     selector: str
@@ -56,13 +56,13 @@ class DeviceRecord:
         return f"{self.platform}: {self.device}"
 
     def as_json(self) -> dict[str, Any]:
-        """All that is known, the ceilings among the rest."""
+        """Return all fields, including those of the ceilings, in one dict."""
         own = asdict(self)
         return own | (own.pop("ceilings") or {})
 
     @classmethod
     def from_json(cls, facts: dict[str, Any]) -> DeviceRecord:
-        """The inverse of `as_json`."""
+        """Return the record that `as_json` wrote."""
         limits = {each.name: facts[each.name] for each in fields(Ceilings) if each.name in facts}
         own = {name: value for name, value in facts.items() if name not in limits}
         return cls(**own, ceilings=Ceilings(**limits) if limits else None)
@@ -77,13 +77,14 @@ class Result:
     name : str
         Such as ``svgf.atrous.3.1280x720``.
     device : str
-        `DeviceRecord.selector`, or what else ran.
+        `DeviceRecord.selector`, or the name of another program that was timed.
     clock : str
-        "event": the device's, from OpenCL events; "host": the caller's; "cpu": what all threads spend together.
+        "event" is the device's time, from OpenCL events; "host" is the caller's; "cpu" is the time of all threads
+        together.
     seconds : tuple of float
     facts : dict
-        What was timed (row, its kernel and level, width, height, signals, iterations, cores) and, by the device's
-        clock, how near it came to its roofline (bytes moved, loaded, flops, bound in s, binds).
+        Its row, kernel, level, width, height, signals, iterations and cores. With the clock "event" also the numbers
+        for its roofline: bytes moved, bytes loaded, flops, bound in s, and which limit binds.
     """
 
     name: str
@@ -94,7 +95,7 @@ class Result:
 
     @cached_property
     def stats(self) -> Stats:
-        """Median, quartiles and the like."""
+        """Median, quartiles and other statistics."""
         stats = Stats()
         for value in self.seconds:
             stats.update(value)
@@ -102,16 +103,16 @@ class Result:
 
     @property
     def median(self) -> float:
-        """Seconds."""
+        """Median of the samples, in seconds."""
         return float(self.stats.median)
 
     @property
     def roofline(self) -> float | None:
-        """Least possible time over the fastest sample: 1 is the limit; None where there is no bound."""
+        """Least possible time over the fastest sample: 1 is the limit; None if there is no bound."""
         return self.facts["bound"] / min(self.seconds) if "bound" in self.facts else None
 
     def as_json(self) -> dict[str, Any]:
-        """The benchmark as pytest-benchmark writes it."""
+        """Return the benchmark as pytest-benchmark writes it."""
         stats = self.stats.as_dict() | {"data": self.seconds, "iterations": 1}
         return {
             "group": f"{self.device} {self.clock}",
@@ -127,16 +128,16 @@ class Result:
 
 @dataclass(frozen=True)
 class Run:
-    """All that one run found.
+    """All results of one run.
 
     Parameters
     ----------
     devices : tuple of DeviceRecord
     results : tuple of Result
     left_out : tuple of str
-        What could not be timed, and why.
+        The cases that could not be timed, and why.
     machine, commit : dict
-        As in pytest-benchmark: the host, and the git revision of svgf_cl.
+        The host, and the git revision of svgf_cl, as in pytest-benchmark.
     date : str
         ISO 8601, UTC.
     """
@@ -150,7 +151,7 @@ class Run:
 
     @classmethod
     def now(cls, devices: tuple[DeviceRecord, ...], results: tuple[Result, ...], left_out: tuple[str, ...]) -> Run:
-        """A run that ends now, on this machine, of this source."""
+        """Return a run that ends now, on this machine, with this source."""
         date = datetime.now(timezone.utc).isoformat(timespec="seconds")
         return cls(devices, results, left_out, pytest_benchmark_generate_machine_info(), commit_info(), date)
 
@@ -162,17 +163,17 @@ class Run:
 
     @property
     def has_ceilings(self) -> bool:
-        """Whether the devices' own limits were measured."""
+        """Whether the devices' limits were measured."""
         return any(device.ceilings for device in self.devices)
 
     @property
     def platforms(self) -> dict[str, str]:
-        """What ran, by `Result.device`: OpenCL implementations; all else is its own."""
+        """OpenCL implementations by `Result.device`; any other program stands for itself."""
         known = {device.selector: device.platform for device in self.devices}
         return known | {result.device: result.device for result in self.results if result.device not in known}
 
     def of(self, device: DeviceRecord, **facts: Any) -> Iterator[Result]:
-        """The results on a device whose clock or facts are as given, in order."""
+        """Yield the results on a device whose clock and facts are as given, in order."""
         for result in self.results:
             known = result.facts | {"clock": result.clock}
             if result.device == device.selector and all(known.get(name) == value for name, value in facts.items()):
@@ -192,12 +193,12 @@ class Run:
         return json.dumps(document, indent=1)
 
     def write(self, path: Path) -> None:
-        """Write the run as JSON, whole."""
+        """Write the run as JSON, completely or not at all."""
         write_text(path, self.text)
 
     @classmethod
     def read(cls, path: Path) -> Run:
-        """Read what `write` wrote; `SvgfError` for any other file."""
+        """Read a file that `write` wrote; raise `SvgfError` for any other file."""
         try:
             document = read_json(path)
             devices = tuple(DeviceRecord.from_json(device) for device in document["machine_info"].pop("opencl"))
@@ -220,7 +221,7 @@ class Run:
 
 
 def commit_info() -> dict[str, Any]:
-    """Version and git revision of this source, wherever the command runs; "unknown" where it is no checkout."""
+    """Return the version and git revision of this source, from any current folder; "unknown" if it is no checkout."""
     source = Path(__file__).parent
     command = ["git", "-C", str(source), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
     described = subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip()

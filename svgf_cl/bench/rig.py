@@ -1,4 +1,4 @@
-"""One denoiser made ready to be timed: its frames lie on the device, its history is long, its caches are warm."""
+"""Times one denoiser, after a warm-up: its frames are on the device, its history is long, and its caches are warm."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.synthetic import room_frame
 
-WARM_UP = 5  # frames: kernels are built, memory is touched, history is long enough for the temporal variance
+WARM_UP = 5  # frames; then kernels are built, memory is in use, and history is long enough for the temporal variance
 
-# What is timed, as the parts of its name: a pass's path, or one of these.
+# A row of the benchmark, as the parts of its name: a pass's path, or one of these.
 Row = tuple[str, ...]
 FRAME: Row = ("frame",)
 FRAME_NUMPY: Row = ("frame", "numpy")
 ENQUEUE: Row = ("enqueue",)
 
-# Clocks: the device's, from OpenCL events; the host's, from the call to the result.
+# Clocks: the device's time from OpenCL events, and the host's time from the call to the result.
 EVENT, HOST = "event", "host"
 
 
 def levels_together(paths: Iterable[Row]) -> dict[Row, list[Row]]:
-    """The paths that differ in their level alone, by the row that stands for all of them."""
+    """Return the paths that differ only in their level, by the row that stands for all of them."""
     found: dict[Row, list[Row]] = {}
     for path in paths:
         if len(path) > 1:
@@ -38,12 +38,12 @@ def levels_together(paths: Iterable[Row]) -> dict[Row, list[Row]]:
 
 
 def there_and_back(shape: Shape, signals: int) -> tuple[Frame, Frame]:
-    """Two frames of the built-in room to send in turn: the camera goes to and fro, and each frame fits the other."""
+    """Return two frames of the built-in room to denoise in turn: the camera goes back and forth between them."""
     return room_frame(shape, 0, 1, signals=signals), room_frame(shape, 1, 0, signals=signals)
 
 
 def on_device(queue: cl.CommandQueue, frame: Frame) -> Frame:
-    """The same frame as device arrays, without the fields that the denoiser would not read."""
+    """Return the frame as device arrays, without the fields that the denoiser would not read."""
     return Frame(**{name: cl_array.to_device(queue, getattr(frame, name)) for name in Inputs.of(frame).fields})
 
 
@@ -53,19 +53,19 @@ class Rig:
     Parameters
     ----------
     frames : pair of Frame
-        As `there_and_back` gives them, in host memory.
+        The result of `there_and_back`, in host memory.
     settings : Filter
     queue : pyopencl.CommandQueue
         With profiling.
     passes : bool
-        Time every pass and the call with numpy arrays too; else the whole frame alone.
+        Time also every pass and the call with numpy arrays; else only the whole frame.
 
     Attributes
     ----------
     samples : mapping from (row, clock) to list of float, s
-        Row: a pass's path; ("atrous",), all its levels; ("frame",), from the first pass to the last or, by the host's
-        clock, from the call to the finished result in device memory; ("enqueue",), until the call returns; ("frame",
-        "numpy"), the call with arrays in host memory.
+        The rows are: a pass's path; ("atrous",) for all its levels; ("frame",) from the first pass to the last, or, by
+        the host's clock, from the call to the finished result in device memory; ("enqueue",) until the call returns;
+        ("frame", "numpy") for the call with arrays in host memory.
     """
 
     def __init__(self, frames: tuple[Frame, Frame], settings: Filter, queue: cl.CommandQueue, *, passes: bool) -> None:
@@ -83,7 +83,7 @@ class Rig:
             self._frame()
 
     def sample(self, seconds: float) -> None:
-        """Take samples for about so many seconds, at least one of each kind; a first frame does not count."""
+        """Take samples for about `seconds`, at least one of each kind; a first frame does not count."""
         end = time.perf_counter() + seconds
         self._frame()
         while True:
@@ -110,14 +110,14 @@ class Rig:
         self._add(HOST, self._waited)
 
     def _after_pass(self, label: str, event: cl.Event) -> None:
-        """Where so asked, wait for every pass and take the host's time of it."""
+        """Wait for the pass and take the host's time, if passes are timed one by one."""
         if self._waits:
             event.wait()
             now = time.perf_counter()
             self._waited[label], self._since = now - self._since, now
 
     def _span(self) -> float:
-        """Seconds on the device from the first pass's start to the last one's end, in the last frame."""
+        """Return the seconds on the device from the first pass's start to the last one's end, in the last frame."""
         events = self.denoiser.events
         return 1e-9 * float(events[-1][1].profile.end - events[0][1].profile.start)
 
@@ -127,13 +127,13 @@ class Rig:
         self.samples[FRAME_NUMPY, HOST].append(time.perf_counter() - begin)
 
     def _frame(self) -> None:
-        """One frame from device memory to device memory."""
+        """Denoise one frame from device memory to device memory."""
         self.denoiser.denoise(self._next(self._frames), out=self._out)
         self._enqueued = time.perf_counter()
         self.denoiser.queue.finish()
 
     def _add(self, clock: str, seconds: dict[str, float]) -> None:
-        """Add one frame's passes, and those together that differ in their level alone."""
+        """Add the samples of one frame's passes, and the sums over the levels of a pass."""
         by_path = {self._paths[label]: value for label, value in seconds.items()}
         for path, value in by_path.items():
             self.samples[path, clock].append(value)

@@ -1,4 +1,4 @@
-"""How near a pass comes to the device's limits (Williams et al. 2009, *Roofline*)."""
+"""Computes how close a pass comes to the device's limits (Williams et al. 2009, *Roofline*)."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from svgf_cl.bench.ceilings import Ceilings
 from svgf_cl.bench.cost import Cost
 
-# What can hold a pass up.
+# The limits that can bound a pass.
 BINDS = ("memory", "loads", "arithmetic")
 
 
 @dataclass(frozen=True)
 class Bound:
-    """The least seconds a pass could take: the longest of moving its bytes, loading its neighbours and computing."""
+    """The least seconds a pass needs to move its bytes, to load its neighbours, and to compute."""
 
     memory: float
     loads: float
@@ -21,10 +21,10 @@ class Bound:
 
     @classmethod
     def of(cls, cost: Cost, before: Cost, ceilings: Ceilings) -> Bound:
-        """The bound of a pass that comes after another, and reads what that one wrote.
+        """Return the bound of a pass that runs right after another and reads its output.
 
-        Since then the device has touched, half of either on average, the rest of the pass before and the beginning of
-        this one; a copy touches its whole working set between two looks at a byte.
+        The working set is what the device touches between writing a byte and reading it again: the rest of the previous
+        pass and the beginning of this one, on average half of each. For a copy it is the whole working set.
         """
         working_set = 0.5 * (before.bytes + cost.bytes)
         return cls(
@@ -35,10 +35,10 @@ class Bound:
 
     @property
     def seconds(self) -> float:
-        """The longest of them."""
+        """The bound: the longest of the three."""
         return max(self.memory, self.loads, self.arithmetic)
 
     @property
     def binds(self) -> str:
-        """Which of them it is, out of `BINDS`."""
+        """The limit that is the longest, one of `BINDS`."""
         return max(BINDS, key=lambda term: float(getattr(self, term)))

@@ -1,4 +1,4 @@
-"""How a frame's time grows: over pixels, iterations, signals and cores."""
+"""Shows how a frame's time grows with pixels, iterations, signals and cores."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from svgf_cl.bench.tables import Table, milliseconds
 
 @dataclass(frozen=True)
 class Series:
-    """Time of a frame on one device over something.
+    """The times of a frame on one device while one quantity varies.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ class Series:
 
 
 def series(run: Run, over: str) -> list[Series]:
-    """A frame's time over "pixels", "iterations", "signals" or "cores", for every device with two points or more."""
+    """Return a frame's time over "pixels", "iterations", "signals" or "cores", for devices with two points or more."""
     found = []
     for device in run.devices:
         points = sorted((position(result, over), result.median) for result in frames(run, device, over))
@@ -39,19 +39,19 @@ def series(run: Run, over: str) -> list[Series]:
 
 
 def frames(run: Run, device: DeviceRecord, over: str) -> list[Result]:
-    """The frames in which nothing else varies."""
+    """Return the results of frames in which only `over` varies."""
     results = run.of(device, row="frame", clock=EVENT)
     return [r for r in results if r.facts["variant"].rstrip("0123456789") == ("" if over == "pixels" else over)]
 
 
 def position(result: Result, over: str) -> float:
-    """Where a frame stands on the axis."""
+    """Return a frame's position on the axis."""
     facts = result.facts
     return float(facts["width"] * facts["height"] if over == "pixels" else facts[over])
 
 
 def table(over: str, found: Sequence[Series]) -> Table:
-    """Times, and how they differ from proportional ones: per pixel, or over the first point's."""
+    """Return a table of times, per pixel if `over` is "pixels", and their ratios to the first point."""
     if over == "pixels":
         columns = ["implementation", "pixels", "ms", "ms / Mpixel", "over the first"]
         rows = [row for each in found for row in per_pixel(each)]
@@ -62,7 +62,7 @@ def table(over: str, found: Sequence[Series]) -> Table:
 
 
 def per_pixel(each: Series) -> list[tuple[str, ...]]:
-    """Rows with the time per pixel: where the last column is 1, time is linear."""
+    """Return rows with the time per pixel; if the last column is 1, time is linear."""
     per = [seconds / pixels for pixels, seconds in zip(each.over, each.seconds, strict=True)]
     return [
         (each.device.platform, f"{pixels:.0f}", milliseconds(seconds), milliseconds(1e6 * cost), f"{cost / per[0]:.2f}")
@@ -71,7 +71,7 @@ def per_pixel(each: Series) -> list[tuple[str, ...]]:
 
 
 def plain(each: Series) -> list[tuple[str, ...]]:
-    """Rows with the time as it is."""
+    """Return rows with the time, without dividing it."""
     return [
         (each.device.platform, f"{where:.0f}", milliseconds(seconds), f"{seconds / each.seconds[0]:.2f}")
         for where, seconds in zip(each.over, each.seconds, strict=True)

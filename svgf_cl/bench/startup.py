@@ -1,4 +1,4 @@
-"""From `import svgf_cl` to the first denoised frame, in new processes: with empty caches, and with full ones."""
+"""Times new processes from `import svgf_cl` to the first denoised frame, with empty caches and with full ones."""
 
 from __future__ import annotations
 
@@ -33,15 +33,15 @@ print(time.perf_counter() - begin)
 
 
 def first_frames(report: DeviceReport, shape: Shape, settings: Filter) -> tuple[float, list[float]]:
-    """Seconds to the first frame with empty compiler caches, and again with what that left in them."""
+    """Return the seconds to the first frame with empty compiler caches, and then with the caches that this filled."""
     with tempfile.TemporaryDirectory(prefix="svgf_cl-bench-") as folder:
         cold = first_frame(report, shape, settings, Path(folder))
         return cold, [first_frame(report, shape, settings, Path(folder)) for _ in range(WARM_STARTS)]
 
 
 def first_frame(report: DeviceReport, shape: Shape, settings: Filter, caches: Path) -> float:
-    """Seconds in a new process that keeps its caches in a folder; `DeviceError` where it fails."""
-    # pyopencl's and this library's own follow the first; drivers have variables of theirs.
+    """Return the seconds in a new process that keeps its caches in a folder; raise `DeviceError` if it fails."""
+    # pyopencl's cache and this library's follow the first variable; each driver has its own.
     variables = ("XDG_CACHE_HOME", "POCL_CACHE_DIR", "CUDA_CACHE_PATH", "NEO_CACHE_DIR", "MESA_SHADER_CACHE_DIR")
     environment = os.environ | {name: str(caches) for name in variables} | {VARIABLE: report.selector}
     command = [sys.executable, "-c", FIRST_FRAME, *map(str, shape), settings.name, json.dumps(asdict(settings))]

@@ -1,4 +1,4 @@
-"""One device of a run: its ceilings, its denoisers, and what was sampled of them."""
+"""`Station`: one device of a run, with its limits, its denoisers and their samples."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ from svgf_cl.frame import Frame, Shape
 
 
 class Station:
-    """A device with all that is to be timed on it.
+    """A device with all the cases to time on it.
 
     Parameters
     ----------
     report : DeviceReport
-        Of a device that works.
+        The report on a device that works.
     chosen : sequence of Case
     settings : Filter
-        Of which the error is told.
+        The filter whose error is measured.
     ceilings : bool
-        Measure the device's ceilings too.
+        Measure the device's limits too.
     """
 
     def __init__(self, report: DeviceReport, chosen: Sequence[Case], settings: Filter, *, ceilings: bool) -> None:
@@ -50,11 +50,11 @@ class Station:
         self._ceilings = CeilingSamples(self._queue) if ceilings else None
 
     def set_up(self, case: Case) -> None:
-        """Make a denoiser ready, or note why that is impossible."""
+        """Prepare a denoiser, or note why that fails."""
         try:
             frames = room(case.shape, len(case.inputs.signals))
             self._rigs[case] = Rig(frames, case.settings, self._queue, passes=not case.variant)
-        except (SvgfError, MemoryError, cl.Error) as error:  # as it may be that the device has no room
+        except (SvgfError, MemoryError, cl.Error) as error:  # the device may lack memory
             self.left_out.append(f"{case.name(FRAME)} on {self.report}: {error}")
 
     def start(self) -> None:
@@ -63,18 +63,18 @@ class Station:
         self._starts = dict(zip(STARTS, ([cold], warm), strict=True))
 
     def sample(self, case: Case, seconds: float) -> None:
-        """Time a case for about so long, if it could be set up."""
+        """Time a case for about `seconds`, if it could be set up."""
         if case in self._rigs:
             with confined(case.cores) if case.cores else nullcontext():
                 self._rigs[case].sample(seconds)
 
     def sample_ceilings(self) -> None:
-        """Take a few samples of each, where they are asked for."""
+        """Take a few samples of each limit, if they are to be measured."""
         if self._ceilings:
             self._ceilings.sample()
 
     def record(self) -> DeviceRecord:
-        """What the report says of the device: its ceilings, and the error."""
+        """Return the description of the device, its limits, and the error on it."""
         largest, rms = error_to_oracle(self.settings, queue=self._queue)
         device = self._queue.device
         return DeviceRecord(
@@ -91,7 +91,7 @@ class Station:
         )
 
     def results(self, record: DeviceRecord, pattern: re.Pattern[str]) -> Iterator[Result]:
-        """All that was sampled and asked for; `record` is this device's."""
+        """Yield the results whose names match `pattern`; `record` is this device's."""
         for name, seconds, facts in self._ceilings.named() if self._ceilings else ():
             yield Result(name, record.selector, EVENT, tuple(seconds), facts)
         usual = Case(USUAL_SHAPE, self.settings)
@@ -124,8 +124,11 @@ class Station:
 
 
 def bound_facts(case: Case, ceilings: Ceilings) -> dict[Row, dict[str, Any]]:
-    """Per row: bytes moved and loaded, operations, the least seconds and what binds; of several passes the sums."""
-    if case.cores is not None:  # the ceilings are those of all
+    """Return for each row the bytes moved and loaded, the operations, the least seconds, and the limit that binds.
+
+    Rows of several passes have the sums.
+    """
+    if case.cores is not None:  # the ceilings are those of all cores
         return {}
     costs = case.costs()
     before = [*costs.values()][-1:] + [*costs.values()][:-1]  # the first pass comes after the last of another frame
@@ -147,5 +150,5 @@ def bound_facts(case: Case, ceilings: Ceilings) -> dict[Row, dict[str, Any]]:
 
 @cache
 def room(shape: Shape, signals: int) -> tuple[Frame, Frame]:
-    """The frames that all devices share."""
+    """Return the frames of a size; all devices share them."""
     return there_and_back(shape, signals)

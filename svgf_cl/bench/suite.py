@@ -1,4 +1,4 @@
-"""The run over all that is timed, on every device, in turn."""
+"""Runs all benchmarks on every device, in turn."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from svgf_cl.errors import SvgfError
 from svgf_cl.filters.filter import Filter
 from svgf_cl.frame import Shape
 
-# Everything is sampled so many times over, in turn: what disturbs the machine for a while disturbs all alike.
+# Everything is sampled this many times, in turn: then a temporary disturbance of the machine affects all alike.
 TURNS = 5
 
 Task = TypeVar("Task")
@@ -28,18 +28,19 @@ ProgressBar = Callable[[str, int], AbstractContextManager[Callable[[], None]]]
 
 @dataclass(frozen=True)
 class Suite:
-    """What to time.
+    """The benchmarks to run.
 
     Parameters
     ----------
     pattern : re.Pattern
-        Searched for in the benchmarks' names.
+        Benchmarks whose names match it are run.
     settings : Filter
     shapes : sequence of (int, int)
     seconds : float, s
-        To spend on each denoiser, about; each kind of sample is taken `TURNS` times whatever it takes.
+        Approximate time for each denoiser. Each kind of sample is taken at least `TURNS` times, however long that
+        takes.
     ceilings : bool
-        Measure the devices' own limits too; without them there are no rooflines.
+        Measure the devices' limits too; without them there are no rooflines.
     """
 
     pattern: re.Pattern[str]
@@ -49,16 +50,17 @@ class Suite:
     ceilings: bool = True
 
     def names(self) -> list[str]:
-        """The benchmarks that `run` would time on any device, the ceilings aside; errors as of `run`."""
+        """Return the benchmarks that `run` would time on any device, except the ceilings; errors are those of `run`."""
         return self._names(timed_devices())
 
     def run(self, progress_bar: ProgressBar) -> Run:
-        """Time everything, in turn: the same denoiser on one device after the other, then the next.
+        """Time everything, in turn: each denoiser on one device after the other.
 
         Parameters
         ----------
         progress_bar : callable
-            Takes a title and a number of steps; a context that gives what to call after each step.
+            Takes a title and a number of steps, and returns a context manager whose value is a function to call after
+            each step.
 
         Raises
         ------
@@ -86,7 +88,7 @@ class Suite:
                 for station, case in chosen:
                     station.sample(case, self.seconds / TURNS)
                     advance()
-        with progress_bar("holding against the oracle", len(stations)) as advance:
+        with progress_bar("comparing with the oracle", len(stations)) as advance:
             records = []
             for station in stations:
                 records.append(station.record())
@@ -96,7 +98,7 @@ class Suite:
         return Run.now(tuple(records), tuple(chain(*results)), tuple(left_out))
 
     def _names(self, reports: Sequence[DeviceReport]) -> list[str]:
-        """What is chosen on some of these devices; `SvgfError` if that is nothing."""
+        """Return the names that match on at least one of these devices; raise `SvgfError` if there is none."""
         every = [case.name(row) for report in reports for case in self._chosen(report) for row in case.rows]
         found = [name for name in dict.fromkeys([*every, *self._starts()]) if self.pattern.search(name)]
         if not found:
@@ -105,18 +107,24 @@ class Suite:
         return found
 
     def _chosen(self, report: DeviceReport) -> list[Case]:
-        """The denoisers of which something is to be timed on a device."""
+        """Return the cases that have something to time on a device."""
         assert report.handle is not None
         every = cases(report.handle, self.shapes, self.settings)
         return [case for case in every if any(self.pattern.search(case.name(row)) for row in case.rows)]
 
     def _starts(self) -> list[str]:
-        """The names of the first frame of a process, chosen or not."""
+        """Return the names of the benchmarks of a process's first frame, whether they match or not."""
         return [Case(USUAL_SHAPE, self.settings).name(row) for row in STARTS]
 
 
 def timed_devices() -> list[DeviceReport]:
-    """The device that ``PYOPENCL_CTX`` names, else all that work, simulators aside; `DeviceError` if there is none."""
+    """Return the device that ``PYOPENCL_CTX`` names, else all working devices except simulators.
+
+    Raises
+    ------
+    DeviceError
+        If no device works.
+    """
     reports = devices.list_devices()
     if devices.VARIABLE in os.environ:
         return [devices.choose(reports)]
@@ -124,5 +132,5 @@ def timed_devices() -> list[DeviceReport]:
 
 
 def interleaved(columns: Sequence[Sequence[Task]]) -> list[Task]:
-    """The first of each, then the second of each, and so on."""
+    """Return the first task of each column, then the second of each, and so on."""
     return [task for row in zip_longest(*columns) for task in row if task is not None]

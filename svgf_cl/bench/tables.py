@@ -1,4 +1,4 @@
-"""A run as tables of text, the same for terminal and report."""
+"""Shows a run as tables of text, the same in the terminal and in the report."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from svgf_cl.bench.ceilings import Ceilings
 from svgf_cl.bench.results import DeviceRecord, Result, Run
 from svgf_cl.bench.rig import EVENT, HOST
 
-# Columns of what `limits` says.
+# The columns that `limits` fills.
 LIMITS = ("roofline %", "bound by", "bytes/px", "loaded/px", "flop/px")
 
 
 @dataclass(frozen=True)
 class Table:
-    """Words in the first column, numbers mostly in the others."""
+    """A table of texts: words in the first column, mostly numbers in the others."""
 
     title: str
     columns: Sequence[str]
@@ -23,13 +23,13 @@ class Table:
 
 
 def milliseconds(seconds: float) -> str:
-    """Three significant digits or so of a time in s, as ms."""
+    """Return a time given in s as text in ms, with about three significant digits."""
     ms = 1e3 * seconds
     return f"{ms:.3g}" if ms < 1 else f"{ms:.2f}" if ms < 100 else f"{ms:.0f}"
 
 
 def device_table(run: Run) -> Table:
-    """What was timed on, a column each: ceilings measured in the same run, if any, and the error."""
+    """Return a table with a column for each device: its description, its limits if measured, and the error."""
     described = [describe(device) for device in run.devices]
     rows = [(what, *(facts[what] for facts in described)) for what in described[0]]
     title = "ceilings measured in the same run, and the error" if run.has_ceilings else "devices, and the error"
@@ -37,7 +37,7 @@ def device_table(run: Run) -> Table:
 
 
 def describe(device: DeviceRecord) -> dict[str, str]:
-    """A device in words."""
+    """Return the texts that describe a device."""
     return {
         "device": device.device,
         "version": device.version,
@@ -51,7 +51,7 @@ def describe(device: DeviceRecord) -> dict[str, str]:
 
 
 def describe_ceilings(ceilings: Ceilings) -> dict[str, str]:
-    """A device's limits in words."""
+    """Return the texts that describe a device's limits."""
     return {
         "copy in cache, GB/s": f"{1e-9 * max(speed for _, speed in ceilings.bandwidth):.0f}",
         "copy out of cache, GB/s": f"{1e-9 * ceilings.bandwidth[-1][1]:.0f}",
@@ -62,7 +62,7 @@ def describe_ceilings(ceilings: Ceilings) -> dict[str, str]:
 
 
 def benchmark_table(run: Run, device: DeviceRecord) -> Table:
-    """Every benchmark on a device, event and host time side by side, without columns that would be empty."""
+    """Return a table of a device's benchmarks, with event and host time side by side, without empty columns."""
     columns = ("benchmark", "event ms", "host ms", *LIMITS, "rounds")
     by_name: dict[str, dict[str, Result]] = {}
     for result in run.of(device):
@@ -73,28 +73,28 @@ def benchmark_table(run: Run, device: DeviceRecord) -> Table:
 
 
 def filled(table: Table) -> Table:
-    """The table without the columns in which nothing was measured."""
+    """Return the table without the columns in which nothing was measured."""
     kept = [index for index in range(len(table.columns)) if any(row[index] != "-" for row in table.rows)]
     columns, *rows = (tuple(cells[index] for index in kept) for cells in (table.columns, *table.rows))
     return Table(table.title, columns, rows)
 
 
 def benchmark_row(name: str, clocks: dict[str, Result]) -> tuple[str, ...]:
-    """One benchmark by both clocks; a dash for what was not measured."""
+    """Return the row of one benchmark, with both clocks; a dash means that it was not measured."""
     event, host = clocks.get(EVENT), clocks.get(HOST)
     rounds = str((event or clocks[HOST]).stats.rounds)
     return (name, spread(event), spread(host), *limits(event), rounds)
 
 
 def spread(result: Result | None) -> str:
-    """Median and half the interquartile range, this in percent of the median."""
+    """Return the median, and half the interquartile range in percent of the median."""
     if result is None:
         return "-"
     return f"{milliseconds(result.median)} ±{50 * result.stats.iqr / result.median:.0f}%"
 
 
 def limits(result: Result | None) -> tuple[str, ...]:
-    """How near a row came to its roofline, what binds it, and what it costs per pixel."""
+    """Return how close a row came to its roofline, which limit binds it, and its cost per pixel."""
     if result is None or result.roofline is None:
         return ("-",) * len(LIMITS)
     facts = result.facts
@@ -104,7 +104,7 @@ def limits(result: Result | None) -> tuple[str, ...]:
 
 
 def memory_table(run: Run) -> Table:
-    """Device memory that a denoiser holds."""
+    """Return a table of the device memory that a denoiser uses."""
     held = {(r.facts["width"], r.facts["height"]): r.facts["planes"] for r in run.results if "planes" in r.facts}
     rows = [(f"{width}x{height}", f"{planes / 1e6:.0f}") for (width, height), planes in held.items()]
     return Table("device memory of a denoiser", ("size", "MB"), rows)

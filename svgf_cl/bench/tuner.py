@@ -1,11 +1,11 @@
 """Finds a device's fastest tuning: races candidates against the default on frames of the built-in room.
 
-Coordinate descent, one race each for vector width, exponential, alignment of rows and work-group. In a race all denoise
-the same frames in turn, a few rounds at a time, and the slower half drops out. What counts is a candidate's time over
-the default's in the same round: whatever else the machine is doing hits both alike.
+The search is a coordinate descent: one race each for vector width, exponential, row alignment and work-group. In a race
+all candidates denoise the same frames in turn, for a few rounds, and then the slower half drops out. A candidate is
+judged by its time over the default's time in the same round, because other load on the machine slows both alike.
 
-That is time on the device. Where numpy arrays are copied to the device, a last race is about the copies alone, and what
-counts there is the whole time of a call from numpy to numpy.
+These are times on the device. If numpy arrays are copied to the device, a last race compares only the ways to copy
+them, by the whole time of a call from numpy to numpy.
 """
 
 from __future__ import annotations
@@ -30,45 +30,45 @@ from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.synthetic import PERIOD, room_frames
 from svgf_cl.oracle.rounding import relative_error
 
-# In this order. Work-groups come last, as PoCL compiles all kernels anew for each: 2 s. None has more than 256 items:
-# GPUs run these whatever registers a kernel takes.
+# In the order of the races. Work-groups come last, because PoCL compiles all kernels again for each: 2 s. None has more
+# than 256 items: GPUs can run these, however many registers a kernel uses.
 CHOICES: dict[str, tuple[Any, ...]] = {
     "vector_width": VECTOR_WIDTHS,
     "exponential": EXPONENTIALS,
     "row_alignment": (16, 64, 128, 256),
     "work_group": ((8, 1), (16, 1), (32, 1), (64, 1), (128, 1), (8, 8), (16, 4), (32, 4), (64, 4), (16, 16)),
 }
-# Elsewhere than on a CPU. Vectors of 8 and 16 pixels need more registers than a work-item of a GPU has, and groups are
-# whole warps of any vendor: 64 items, or multiples of that.
+# For devices that are not CPUs. Vectors of 8 and 16 pixels need more registers than a work-item of a GPU has. Groups
+# are whole warps of any vendor: 64 items, or multiples of that.
 GPU_CHOICES: dict[str, tuple[Any, ...]] = CHOICES | {
     "vector_width": (1, 4),
     "work_group": ((64, 1), (128, 1), (256, 1), (8, 8), (16, 4), (32, 2), (16, 8), (32, 4), (64, 4), (32, 8), (16, 16)),
 }
 
-SECONDS = 45.0  # then no candidate is built any more and no round begun, but for the least that a verdict takes
-FINAL_SHARE = 0.15  # of these
+SECONDS = 45.0  # after this time no candidate is built, and only the rounds that a result needs at least are run
+FINAL_SHARE = 0.15  # of these seconds
 
-WARM_UP = 3  # frames: kernels are built, memory is touched
-HOPELESS = 2.5  # times the default's time in the warm-up: out without a race
+WARM_UP = 3  # frames; then kernels are built and memory is in use
+HOPELESS = 2.5  # a candidate that takes this many times as long as the default in the warm-up does not race
 ROUNDS = 4  # until the slower half drops out
-FINAL_ROUNDS = 12, 40  # at least, and while there is time
+FINAL_ROUNDS = 12, 40  # at least, and at most if there is time
 
-# The winner must be faster in so many rounds of the final (of 12, chance does that once in 50 searches), and worth it.
+# The winner must be faster in this share of the final's rounds; by chance that happens in 1 of 50 searches (12 rounds).
 CERTAIN = 0.8
-WORTHWHILE = 0.98  # of the default's time
-# Interquartile range of the default's time over its median, up to which a verdict is worth keeping. Over 40 rounds that
-# waver so much the median ratio has a standard error of 2 %: as much as the least gain that counts. On two quiet cores
-# 4 to 7 % were seen, with another program on each 12 %.
+WORTHWHILE = 0.98  # of the default's time, at most
+# Interquartile range of the default's time over its median, at most, for a result that is worth storing. With more, the
+# median ratio of 40 rounds has a standard error of 2 %, as much as the least gain that counts. It was 4 to 7 % on two
+# quiet cores, and 12 % with another program on each core.
 STEADY = 0.1
 
-# Tunings differ by rounding, and by more where rounding decides about a tap; a column of wrong pixels is beyond both.
+# Tunings differ by rounding, and by more where rounding decides about a tap; a column of wrong pixels exceeds both.
 ROUNDING = 1e-4  # relative, as in svgf_cl.oracle.rounding
 DECIDED_OTHERWISE = 5e-4  # of the pixels
 
 
 @dataclass
 class Trial:
-    """A tuning and how it did.
+    """A tuning and its results.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class Trial:
     ratios : list of float
         These times over the default's for the same frame.
     fault : str
-        Why it is out of the question; empty for a sound one.
+        Why it cannot be used; empty if it can.
     """
 
     tuning: Tuning
@@ -93,12 +93,12 @@ class Trial:
 
     @property
     def ratio(self) -> float:
-        """Median time over the default's; infinite for one that never raced."""
+        """Median of `ratios`; infinite for a trial that never raced."""
         return median(self.ratios) if self.ratios else float("inf")
 
     @property
     def wavering(self) -> float:
-        """Interquartile range of its times over their median; 0 for one that never raced."""
+        """Interquartile range of its times over their median; 0 for a trial that never raced."""
         if not self.times:
             return 0.0
         lower, upper = np.percentile(self.times, (25, 75))
@@ -111,14 +111,14 @@ class Trial:
         return self.ratio <= WORTHWHILE and wins >= CERTAIN * len(self.ratios)
 
     def as_json(self) -> dict[str, Any]:
-        """What is known of it, for a file; None for what was not timed."""
+        """Return the trial for a file; times are None if it was not timed."""
         timed = {"ms": self.time, "ratio": self.ratio} if self.times else {"ms": None, "ratio": None}
         return {"tuning": str(self.tuning), "values": asdict(self.tuning), **timed, "fault": self.fault}
 
 
 @dataclass
 class Runner:
-    """A trial on its way, with the denoiser that is timed."""
+    """A trial in a race, with the denoiser that is timed."""
 
     trial: Trial
     denoiser: Denoiser
@@ -135,16 +135,16 @@ class Tuner:
     queue : pyopencl.CommandQueue
         In order, with profiling.
     seconds : float
-        For the search; the least that a verdict takes may take longer.
+        Time for the search; the rounds that a result needs at least may take longer.
 
     Attributes
     ----------
     trials : list of Trial
         Every tuning tried, in order; the default first.
     untried : int
-        Candidates for which there was no time.
+        Number of candidates for which there was no time.
     reference : Trial
-        The default as it did in the final, or in all races where there was none.
+        The default's results in the final, or in all races if there was no final.
     """
 
     def __init__(self, shape: Shape, queue: cl.CommandQueue, seconds: float = SECONDS) -> None:
@@ -163,22 +163,22 @@ class Tuner:
 
     @property
     def steps(self) -> int:
-        """Of a search, as its progress is counted."""
+        """Number of steps of a search, for a progress bar."""
         return sum(map(len, self._choices.values())) + 1
 
     def race_copies(self, tuning: Tuning) -> Trial | None:
-        """Race copies by way of pinned memory against direct ones, after `search`.
+        """Race copies through pinned memory against direct copies, after `search`.
 
         Parameters
         ----------
         tuning : Tuning
-            The one to use, with direct copies.
+            The tuning that `search` found, with direct copies.
 
         Returns
         -------
         Trial, optional
-            `tuning` with pinned copies; to be used if it `is_faster`. None where the device works in the host's memory,
-            so that hardly anything is copied.
+            `tuning` with pinned copies; use it if it `is_faster`. None if the device works in the host's memory, so
+            that almost nothing is copied.
         """
         if shares_memory(self._queue.device):
             return None
@@ -188,7 +188,7 @@ class Tuner:
         return pinned
 
     def search(self, advance: Callable[[], None] = lambda: None) -> Trial:
-        """Race the candidates, then the best of them against the default alone.
+        """Race the candidates, and then the best of them against the default in a final.
 
         Parameters
         ----------
@@ -198,7 +198,7 @@ class Tuner:
         Returns
         -------
         Trial
-            That final; the tuning to use is its own if it `is_faster`, else the default.
+            The best candidate's results in the final. Use its tuning if it `is_faster`, else the default.
 
         Raises
         ------
@@ -218,16 +218,16 @@ class Tuner:
 
     @property
     def doubts(self) -> list[str]:
-        """Why what was found should not be kept; empty where it should."""
+        """Reasons not to store the result; empty if there are none."""
         found = []
         if self.untried:
             found.append(f"no time was left for {self.untried} candidates")
         if self.reference.wavering > STEADY:
-            found.append(f"the default's own time wavers by {self.reference.wavering:.0%}, more than {STEADY:.0%}")
+            found.append(f"the default's own time varies by {self.reference.wavering:.0%}, more than {STEADY:.0%}")
         return found
 
     def _race(self, best: Trial, knob: str, deadline: float, advance: Callable[[], None]) -> Trial:
-        """The fastest of `best`, the default, and what comes of giving `best` other values of one knob."""
+        """Return the fastest of the default, `best`, and the variants of `best` with other values of one knob."""
         default = self._enter(self._default)
         rivals = [] if best is self._default else [self._enter(best)]
         for value in self._choices[knob]:
@@ -243,7 +243,7 @@ class Tuner:
         return min([self._default, *(runner.trial for runner in rivals)], key=lambda trial: trial.ratio)
 
     def _candidate(self, tuning: Tuning, deadline: float) -> list[Runner]:
-        """A runner for a tuning, or none if it was tried, is at fault, or comes too late."""
+        """Return a runner for a tuning; none if it was tried before, fails, or comes too late."""
         if self._launch(tuning) in {self._launch(trial.tuning) for trial in self.trials}:
             return []
         if time.monotonic() > deadline:
@@ -259,11 +259,11 @@ class Tuner:
             return []
 
     def _launch(self, tuning: Tuning) -> tuple[Any, ...]:
-        """What a tuning comes to at this size."""
+        """Return what a tuning sets at this size; equal results mean equal launches."""
         return *tuning.defines.values(), tuning.work_group, Layout(*self._shape, tuning.row_alignment).pitch
 
     def _enter(self, trial: Trial) -> Runner:
-        """Warm up; `SvgfError` if the result is not the default's."""
+        """Warm up a trial's denoiser; raise `SvgfError` if its result is not the default's."""
         denoiser = Denoiser(self._shape, queue=self._queue, tuning=trial.tuning)
         times = [self._milliseconds(denoiser, frame) for frame in self._frames[:WARM_UP]]
         if self._expected is None:
@@ -280,9 +280,10 @@ class Tuner:
         deadline: float,
         clock: Callable[[Denoiser, Frame], float] | None = None,
     ) -> None:
-        """Time runners against the first, frame by frame in turn: rounds[1] frames, after rounds[0] only in time.
+        """Time runners against the first, in turn, frame by frame.
 
-        `clock` times a frame, in ms; without one its time on the device counts.
+        There are rounds[0] frames, and up to rounds[1] before the deadline. `clock` times a frame in ms; the default is
+        the time on the device.
         """
         clock = clock or self._milliseconds
         for index in range(rounds[1]):
@@ -297,12 +298,12 @@ class Tuner:
                 runner.trial.ratios.append(times[runner.trial.tuning] / times[runners[0].trial.tuning])
 
     def _milliseconds(self, denoiser: Denoiser, frame: Frame) -> float:
-        """Time of a frame on the device."""
+        """Denoise a frame, and return its time on the device."""
         denoiser.denoise(frame, out=self._out)
         return sum(denoiser.profile().values())
 
     def _milliseconds_of_call(self, denoiser: Denoiser, frame: Frame) -> float:
-        """Time of a call from numpy arrays to a numpy array, as its caller sees it."""
+        """Denoise a frame, and return the time of the whole call from numpy arrays to a numpy array."""
         begin = time.perf_counter()
         denoiser.denoise(frame, out=self._out)
         return 1e3 * (time.perf_counter() - begin)

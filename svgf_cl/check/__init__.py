@@ -1,4 +1,4 @@
-"""Checks of a renderer's frames: they find common mistakes from the frames alone.
+"""Finds common mistakes in a renderer's frames, from the frames alone.
 
 `check_frame` and `check_sequence` measure each frame with every `Check` of `CHECKS`, and judge the sums over frames.
 """
@@ -48,7 +48,7 @@ def check_frame(frame: Frame, previous: Frame | None = None) -> Report:
     Parameters
     ----------
     frame : Frame
-        Of numpy or pyopencl arrays.
+        Its fields are numpy or pyopencl arrays.
     previous : Frame, optional
         The previous frame; without it, motion and everything that must stay the same over time are not checked.
 
@@ -59,11 +59,11 @@ def check_frame(frame: Frame, previous: Frame | None = None) -> Report:
     Raises
     ------
     FrameError
-        A field is missing, or has a shape or type that the denoiser does not accept.
+        If a field is missing, or has a shape or type that the denoiser does not accept.
 
     Notes
     -----
-    Several frames show far more than two: see `check_sequence`.
+    More frames allow many more checks; see `check_sequence`.
     """
     return check_sequence([frame] if previous is None else [previous, frame])
 
@@ -83,7 +83,7 @@ def check_sequence(frames: Iterable[Frame]) -> Report:
     Raises
     ------
     FrameError
-        A field is missing, or has a shape or type that the denoiser does not accept.
+        If a field is missing, or has a shape or type that the denoiser does not accept.
     """
     inspection = Inspection()
     for frame in frames:
@@ -92,7 +92,7 @@ def check_sequence(frames: Iterable[Frame]) -> Report:
 
 
 class Inspection:
-    """All checks on the frames of a shot, which are added one by one; two are in memory at a time."""
+    """Runs all checks on the frames of a shot, which are added one by one; two are in memory at a time."""
 
     def __init__(self) -> None:
         self._sums: dict[Check, Array] = {}
@@ -100,7 +100,7 @@ class Inspection:
         self._run = self._longest = 0
 
     def add(self, frame: Frame) -> None:
-        """Measure the next frame; raises `FrameError` like `check_sequence`."""
+        """Measure the next frame; raise `FrameError` as `check_sequence` does."""
         frame.check(self._views[-1].frame.shape if self._views else frame.shape)
         self._run += 1
         self._longest = max(self._longest, self._run)
@@ -112,16 +112,16 @@ class Inspection:
                     self._sums[check] = self._sums.get(check, 0) + told
 
     def cut(self) -> None:
-        """Say that there is a cut before the next frame."""
+        """Begin a new shot with the next frame."""
         self._views, self._run = [], 0
 
     def report(self) -> Report:
-        """The report on the frames so far."""
+        """Return the report on the frames so far."""
         return judged(self._sums, self._longest)
 
 
 def judged(sums: dict[Check, Array], count: int) -> Report:
-    """The report from sums over frames, of which at most `count` were consecutive."""
+    """Return the report from sums over frames, of which at most `count` were consecutive."""
     findings: list[Finding] = []
     unknown: list[Unknown] = []
     passed: list[str] = []

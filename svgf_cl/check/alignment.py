@@ -1,7 +1,7 @@
-"""The fields of the G-buffer show the same edges in the same places: none is upside down, none of another frame.
+"""Checks that the fields of the G-buffer have their edges in the same places.
 
-Edges of a field correlate with those of the others; of a field that is out of place they do so more with the others'
-mirror image, or with the others of a neighbouring frame.
+The edges of a field correlate with those of the others. If a field is upside down, its edges correlate more with the
+others' mirror image; if it belongs to another frame, more with the others of that frame.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from svgf_cl.check.finding import Finding, Unknown
 from svgf_cl.check.view import Array, View, over_channels, shifted
 
 FIELDS = ("depth", "normal", "albedo", "id", "motion")
-# Second differences between neighbours that make an edge: of one over depth and of the fastest motion, relative; of
-# components of normals; of channels of albedo.
+# Least second differences between neighbours at an edge: relative ones of one over depth, and of motion compared with
+# the fastest; absolute ones of components of normals, and of channels of albedo.
 NEARNESS, MOTION, NORMAL, ALBEDO = 0.05, 0.02, 0.2, 0.1
-MOVING = 0.01  # pixels, the fastest motion that has edges
-CLEARLY = 1.1  # times as much correlation
-CERTAIN = 0.03  # more correlation
+MOVING = 0.01  # pixels; if the fastest motion is less, motion has no edges
+CLEARLY = 1.1  # the correlation must be higher by this factor
+CERTAIN = 0.03  # and by this amount
 ENOUGH = 2e-3  # share of pixels on edges
 
 
-@lru_cache(maxsize=2)  # of a frame and the one before it
+@lru_cache(maxsize=2)  # for a frame and the previous one
 def edges(view: View) -> dict[str, Array]:
-    """The edges of each field, (h, w): 0 or 1."""
+    """Return the edges of each field, (h, w): 0 or 1."""
     if view.is_small:
         return {}
     found: dict[str, NDArray[np.generic]] = {
@@ -45,13 +45,16 @@ def edges(view: View) -> dict[str, Array]:
 
 
 def bend(values: Array) -> Array:
-    """The largest difference of each pixel (h, w) of (h, w, ...) from the mean of the neighbours on both sides."""
+    """Return the largest second difference at each pixel (h, w) of (h, w, ...), over both axes and all channels."""
     both = [shifted(values, dx, dy) + shifted(values, -dx, -dy) - 2 * values for dx, dy in ((1, 0), (0, 1))]
     return over_channels(np.maximum, np.atleast_3d(np.maximum(*map(np.abs, both))))
 
 
 def correlations(first: dict[str, Array], second: dict[str, Array]) -> Array:
-    """Correlation of each field's edges in the first frame with those of the other fields in the second, (F), or 0."""
+    """Return the correlation of each field's edges in the first frame with the other fields' edges in the second, (F).
+
+    It is 0 where there are no edges.
+    """
     found = np.zeros(len(FIELDS))
     for index, name in enumerate(FIELDS):
         others = [values for other, values in second.items() if other != name]
@@ -61,21 +64,21 @@ def correlations(first: dict[str, Array], second: dict[str, Array]) -> Array:
 
 
 def mirrored(view: View) -> Array:
-    """Which fields have correlations; these as is, and with the others upside down: (3, F)."""
+    """Return which fields have correlations, these, and the correlations with the others upside down: (3, F)."""
     now = edges(view)
     here = correlations(now, now)
     return np.array([here != 0, here, correlations(now, {name: values[::-1] for name, values in now.items()})])
 
 
 def displaced(before: View, now: View) -> Array:
-    """The same with the others of the frame before, and with the others of the frame after: (4, F)."""
+    """Return which fields have correlations, these, and those with the previous and next frame's others: (4, F)."""
     old, new = edges(before), edges(now)
     here = correlations(new, new)
     return np.array([here != 0, here, correlations(new, old), correlations(old, new)])
 
 
 def judged(sums: Array, topic: str, why: str, mistakes: tuple[tuple[str, str], ...]) -> list[Finding | Unknown]:
-    """Report a mistake if the edges of a field fit clearly better to those of the others after the correction."""
+    """Report a mistake if the edges of a field match those of the others clearly better after the correction."""
     findings: list[Finding | Unknown] = []
     alike = []
     for name, (frames, as_is, *others) in zip(FIELDS, sums.T, strict=True):
@@ -94,7 +97,7 @@ def judged(sums: Array, topic: str, why: str, mistakes: tuple[tuple[str, str], .
 
 
 def judge_mirrored(sums: Array) -> list[Finding | Unknown]:
-    """Fields that fit to the mirror images of the others are upside down."""
+    """Report fields that match the mirror images of the others: they are upside down."""
     cure = "row 0 must be at the top of every field: flip the rows of fields from a graphics API's buffer"
     return judged(
         sums,
@@ -105,7 +108,7 @@ def judge_mirrored(sums: Array) -> list[Finding | Unknown]:
 
 
 def judge_displaced(sums: Array) -> list[Finding | Unknown]:
-    """Fields that fit to the others of another frame are late or early."""
+    """Report fields that match the others of another frame: they are late or early."""
     cure = "give fields of one frame; perhaps a buffer is read before it is written"
     mistakes = (
         ("of the previous frame, compared with the other fields", cure),

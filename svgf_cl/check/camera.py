@@ -1,11 +1,11 @@
-"""The camera's path, told from motion: and whether anything is added to it that is no camera's, such as jitter.
+"""Computes the camera's path from motion, and finds offsets in motion that no camera causes, such as jitter.
 
-What a camera saw at (x, y, z) it sees from elsewhere, as long as nothing else moves, at
+If only the camera moves, a point at pixel (x, y) with depth z moves to
 
     (x', y') = (A1 . (x, y, 1) + b1 / z, A2 . (x, y, 1) + b2 / z) / (A3 . (x, y, 1) + b3 / z),   A = K R K^-1,
 
-x and y being pixels from the middle of the image. K holds the focal length, and in A's first two rows whatever is added
-to all motion alike: as R is a rotation, rows 1 and 2 of A K are at a right angle to row 3 without it.
+where x and y are pixels from the middle of the image, and K contains the focal length. R is a rotation, so rows 1 and 2
+of A K are at a right angle to row 3. An offset that is added to all motion changes rows 1 and 2 of A, and this angle.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ from svgf_cl.check.view import Array, View, pixel_centers, sample
 
 SAMPLES = 2000
 ENOUGH = 100  # pixels
-FLAT = 0.02  # by how much one over depth, relative to its median, must be off a plane for A and b to differ
-TURNS = 20  # of a fit in which each pixel counts the less the worse it fits
+FLAT = 0.02  # least deviation of one over depth, relative to its median, from a plane; else A and b are not separable
+TURNS = 20  # iterations of a fit in which a pixel counts less the worse it fits
 STEADY = 0.02  # pixels by which motion may differ from a camera's
-FOLLOW = 0.4  # share of pixels that must move as the camera does
+FOLLOW = 0.4  # least share of pixels that move as the camera does
 FOCAL_LENGTHS = np.geomspace(0.3, 6.0, 400)  # in image heights
-NOTICED = 0.08  # pixels
-SAME = 0.8  # length of the mean offset over that of a single one
+NOTICED = 0.08  # least offset, in pixels, that is reported
+SAME = 0.8  # length of the mean offset over the length of a single one; above it, offsets are the same in all frames
 
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """How the camera moved from one frame to the next.
+    """The camera's movement from one frame to the next.
 
     Parameters
     ----------
@@ -44,24 +44,24 @@ class Path:
     matrix: Array
 
     def turn(self, focal: float) -> float:
-        """The approximate rotation in radians, for a focal length in pixels."""
+        """Return the approximate rotation in radians, for a focal length in pixels."""
         a = self.matrix
         return float(focal * np.hypot(*a[2, :2]) + abs(a[0, 1] - a[1, 0]) / 2)
 
     def offset(self, focal: Array) -> Array:
-        """The offset of all motion, (n, 2) in pixels, for focal lengths (n) in pixels."""
+        """Return the offset of all motion, (n, 2) in pixels, for focal lengths (n) in pixels."""
         rows = self.matrix * np.stack([focal, focal, np.ones_like(focal)], axis=-1)[:, None]
         added: Array = (rows[:, :2] @ rows[:, 2, :, None])[..., 0] / (rows[:, 2:] ** 2).sum(axis=-1)
         return added
 
 
-@lru_cache(maxsize=1)  # several checks want it of the same frame
+@lru_cache(maxsize=1)  # several checks need it for the same frame
 def path(view: View) -> Path | None:
-    """The movement of the camera from motion; None if most pixels move differently, or all are on one plane."""
+    """Return the camera's movement, computed from motion; None if most pixels move differently, or all are coplanar."""
     pixels = sample(view.hit, SAMPLES)
     if len(pixels) < ENOUGH:
         return None
-    unit = 0.5 * view.shape[1]  # in which all numbers are about 1
+    unit = 0.5 * view.shape[1]  # in this unit all numbers are about 1
     x, y = (axis.ravel()[pixels] / unit for axis in pixel_centers(view.shape))
     near = view.nearness.ravel()[pixels] * typical_depth(view)
     flat = np.stack([x, y, np.ones_like(x)], axis=-1)
@@ -89,13 +89,13 @@ def path(view: View) -> Path | None:
 
 
 def typical_depth(view: View) -> float:
-    """The median of what was hit."""
+    """Return the median depth of the pixels that hit a surface."""
     return float(np.median(view.depth[view.hit]))
 
 
 def offsets(before: View, now: View) -> Array | None:
-    """Frames; for each of `FOCAL_LENGTHS` the offset's x and y in pixels of the frame, and its square: (4, n)."""
-    del before  # motion alone tells, but the first frame's leads nowhere
+    """Return the number of frames, the offset's x and y in pixels, and its square for `FOCAL_LENGTHS`: (4, n)."""
+    del before  # not needed, but the first frame has no valid motion
     if has_noisy_depth(now.frame):  # an error in depth that a camera's path cannot explain looks like an offset
         return None
     camera = path(now)
@@ -106,7 +106,7 @@ def offsets(before: View, now: View) -> Array | None:
 
 
 def judge(sums: Array) -> list[Finding | Unknown]:
-    """With any focal length, the motion of a camera has no offset; the offset of jitter changes in every frame."""
+    """Report jitter if motion has an offset for every focal length, and the offset changes in every frame."""
     frames, x, y, square = sums[:, np.argmin(sums[3])].tolist()
     length = np.sqrt(square / frames)
     if length < NOTICED:

@@ -1,4 +1,4 @@
-"""`Check`: one check of frames. It measures each frame, and judges the sum over frames."""
+"""`Check`: one check of frames, which measures each frame and judges the sum over frames."""
 
 from __future__ import annotations
 
@@ -16,19 +16,21 @@ class Check:
     Parameters
     ----------
     topic : str
-        What is looked at, as users read it: ``"motion: direction, axes, unit"``.
+        The title of the check for users: ``"motion: direction, axes, unit"``.
     measure : callable
-        What a frame says, or the frame before and a frame: sums or counts. None where it says nothing.
+        Measures a frame, or the previous frame and a frame, and returns sums or counts; None if the frames do not allow
+        the check.
     judge : callable
-        From the sum over frames to what is wrong, and what cannot be told; neither where all is well.
+        Returns the mistakes and the open questions for the sum over frames; nothing if the check passed.
     silence : str
-        Why frames may say nothing.
+        Why frames may not allow the check.
     frames : int
-        How many frames in a row `measure` takes.
+        Number of consecutive frames that `measure` takes.
     trusts : tuple of str
-        Fields that it takes for right: where one is known to be wrong it would only tell of that again.
+        Fields that must be right for this check. It is not done if one of them is wrong.
     fields : tuple of str
-        What it looks at one by one, as columns of what it measures; the first row says how much of each there was.
+        If the check looks at several fields, their names: the columns of its measurement. The first row of the
+        measurement says how much of each field there was.
     """
 
     topic: str
@@ -40,11 +42,11 @@ class Check:
     fields: tuple[str, ...] = ()
 
     def ask(self, views: Sequence[View]) -> Array | None:
-        """The measurement of the last of some consecutive frames."""
+        """Measure the last of some consecutive frames."""
         return self.measure(*views[-self.frames :]) if len(views) >= self.frames else None
 
     def verdict(self, total: Array | None, wrong: set[str], count: int) -> Sequence[Finding | Unknown]:
-        """Judge the sum over frames, of which at most `count` are consecutive; fields in `wrong` have mistakes."""
+        """Judge the sum over frames, of which at most `count` are consecutive; the fields in `wrong` have mistakes."""
         first = [name for name in self.trusts if name in wrong]
         if first:
             return [Unknown(self.topic, f"correct {first[0]} first")]
@@ -53,5 +55,5 @@ class Check:
         return [Unknown(self.topic, self.silence)] if total is None else self.judge(total)
 
     def looked_at(self, total: Array) -> tuple[str, ...]:
-        """The `fields` that the frames have."""
+        """Return the `fields` that the frames have."""
         return tuple(name for name, seen in zip(self.fields, total[0], strict=True) if seen)

@@ -1,8 +1,8 @@
-"""Depth: finds encodings other than the distance along the camera's axis from the shape of planes.
+"""Checks that depth is the distance along the camera's axis, by the shape of planes.
 
-On a plane seen in perspective one over the distance along the axis is affine in x and y: of three pixels in a row, the
-middle one has the mean of both ends. Of three pixels with one normal this is tried with what was given, and with what
-would undo a mistake; each votes for the clearly straightest.
+On a plane seen in perspective, one over the distance along the axis is affine in x and y: of three pixels in a row, the
+middle one has the mean of both ends. For triples of pixels with the same normal, this is tested with the given depth,
+and with each correction of a mistake. Each triple votes for the version that is clearly the straightest.
 """
 
 from __future__ import annotations
@@ -13,31 +13,31 @@ from svgf_cl.check.check import Check
 from svgf_cl.check.finding import Finding, Unknown
 from svgf_cl.check.view import Array, View, Whole, pixel_centers, sample
 
-SAMPLES = 10000  # pixels that may turn out to be on planes
+SAMPLES = 10000  # pixels that may lie on planes
 REACH = 1 / 30  # of the image's height, from the middle pixel to both others
-SAME = 1e-3  # between components of normals on one plane
-PRECISION = 2e-6  # relative error of depth that is rounding
-CLEARLY = 0.3  # of the other's error
+SAME = 1e-3  # greatest difference between components of normals on one plane
+PRECISION = 2e-6  # relative error of depth by rounding
+CLEARLY = 0.3  # the smaller error is less than this share of the other
 ENOUGH = 50  # votes
-FLAT = 3e-3  # of depth: how much less three pixels on a plane vary if they are as good as at one distance
-ONE_WAY = 0.9  # length of the mean normal, from which on all planes may well face the camera
-FOCAL_LENGTHS = np.geomspace(0.3, 4.0, 16)  # in image heights, of cameras that may have measured along the ray
+FLAT = 3e-3  # of depth: three pixels that vary less are practically at one distance
+ONE_WAY = 0.9  # if the mean normal is longer than this, all planes may face the camera
+FOCAL_LENGTHS = np.geomspace(0.3, 4.0, 16)  # in image heights, for depth along the ray
 
 NOT_LINEAR = (
     "not linear: a depth buffer, or one over the distance",
-    "convert: near far / (far - d (far - near)) if 0 is near and 1 is far; 1 / d of the reciprocal",
+    "convert: near far / (far - d (far - near)) if 0 is near and 1 is far; 1 / d if d is one over the distance",
 )
 MISTAKES = (
-    NOT_LINEAR,  # depth itself is straight
+    NOT_LINEAR,  # depth itself is affine
     ("does not begin at the camera: scaled between near and far plane", "convert: near + d (far - near)"),
-    ("inverted: it falls with the distance", "convert: far - d of what was far - z"),
+    ("inverted: it falls with the distance", "convert: far - d if d is far - z"),
     *[("measured along the ray", "multiply by the cosine between the ray and the camera's axis")] * len(FOCAL_LENGTHS),
-    NOT_LINEAR,  # all is as good as at one distance, as in a buffer whose near plane is very near: told last
+    NOT_LINEAR,  # all depths are almost equal, as in a buffer whose near plane is very near: the last choice
 )
 
 
 def votes(view: View) -> Array | None:
-    """Votes for each of `MISTAKES`, and against it: (2, mistakes)."""
+    """Return the votes for and against each of `MISTAKES`: (2, mistakes)."""
     pixels = triples(view)
     if len(pixels) < ENOUGH:
         return None
@@ -66,7 +66,7 @@ def votes(view: View) -> Array | None:
 
 
 def triples(view: View) -> Whole:
-    """Three pixels in a row on one plane, as indices into the flattened image: (n, 3)."""
+    """Return triples of pixels in a row on one plane, as indices into the flattened image: (n, 3)."""
     (height, width), reach = view.shape, max(round(REACH * view.shape[0]), 2)
     found = []
     for dx, dy in ((reach, 0), (0, reach)):
@@ -79,9 +79,9 @@ def triples(view: View) -> Whole:
 
 
 def error(values: Array, sensitivity: Array) -> Array:
-    """How far the middle of three values (n, 3), made of depth, is from the mean of both ends: (n), as relative depth.
+    """Return how far the middle of three values (n, 3) is from the mean of both ends: (n), as relative depth.
 
-    `sensitivity` says by how much depth changes, relative to itself, where they change by 1.
+    The values are functions of depth. `sensitivity` is the relative change of depth if a value changes by 1.
     """
     bend = values[:, 0] + values[:, 2] - 2 * values[:, 1]
     off: Array = np.maximum(np.abs(bend * sensitivity[:, 1]), PRECISION)
@@ -89,9 +89,9 @@ def error(values: Array, sensitivity: Array) -> Array:
 
 
 def origin(depth: Array) -> float:
-    """The c for which 1 / (depth - c) is straight in most triples (n, 3); 0 where depth itself is the distance.
+    """Return the c for which 1 / (depth - c) is affine in most triples (n, 3); 0 if depth itself is the distance.
 
-    1 / (value - c) is straight in a, b, d if c (a + d - 2 b) = 2 a d - b (a + d).
+    1 / (value - c) is affine in a, b, d if c (a + d - 2 b) = 2 a d - b (a + d).
     """
     a, b, d = depth.T
     curved, product = a + d - 2 * b, 2 * a * d - b * (a + d)
@@ -101,7 +101,7 @@ def origin(depth: Array) -> float:
 
 
 def judge(sums: Array) -> list[Finding | Unknown]:
-    """Report a mistake if it has many votes and hardly any against it; with many for and against, nothing is known."""
+    """Report a mistake with many votes for it and few against; with many of both, the result is unknown."""
     wins, losses = sums
     *plain, last = (wins >= ENOUGH) & (wins > 4 * losses)
     best = int(np.argmax(np.where(plain, wins[:-1], 0))) if any(plain) else len(wins) - 1

@@ -1,4 +1,4 @@
-"""Results of checks: mistakes, checks that were not possible, and checks that passed."""
+"""The results of checks: mistakes, checks that were not possible, and checks that passed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ EXPECTED = {
     "color": "linear HDR radiance, noisy, without exposure or view transform",
     "normal": "world-space unit vectors, 0 where the ray hit nothing",
     "depth": "distance along the camera's axis, linear, above 0, +inf where the ray hit nothing",
-    "motion": "previous minus current position in pixels, x right, y down, no jitter; third component: that of depth",
+    "motion": "previous minus current position in pixels, x right, y down, no jitter; third component: that for depth",
     "albedo": "linear reflectance, 0 to 1",
     "id": "whole numbers; the same object has the same one in every frame",
     "emission": "linear radiance of visible lamps and sky, also contained in color",
@@ -35,7 +35,7 @@ class Finding:
     what : str
         The mistake, always in the same words.
     measured : str
-        The figures that show it.
+        The numbers that show it.
     cure : str
         What to do.
     severity : {"error", "warning"}
@@ -99,5 +99,5 @@ class Report:
 
 
 def percent(part: float, whole: float) -> str:
-    """Write a share of pixels for people: ``"3.21 % of the pixels"``."""
+    """Return a share of pixels as text: ``"3.21 % of the pixels"``."""
     return f"{100 * part / max(whole, 1):.3g} % of the pixels"

@@ -1,8 +1,9 @@
-"""Motion: finds the usual mistake whose correction makes motion lead to the same surfaces in the previous frame.
+"""Checks that motion leads to the same surfaces in the previous frame, and else finds the mistake.
 
-What is looked for is what stays on surfaces: normal, albedo, and the steps of depth. How much it differs, over how much
-it changes from pixel to pixel, is an error in pixels. The sub-pixel jitter of both frames displaces everything alike,
-though motion leaves it out: that much is allowed.
+Each usual mistake is corrected; the correction that leads to the same surfaces shows the mistake. Surfaces are compared
+by features that stay on them: normal, albedo, and the steps of depth. The difference of the features, divided by their
+change from pixel to pixel, is an error in pixels. The sub-pixel jitter of both frames displaces all features by the
+same offset, which motion does not contain. So such an offset is allowed.
 """
 
 from __future__ import annotations
@@ -18,17 +19,17 @@ from svgf_cl.check.view import Array, View, Whole, over_channels, sample, shifte
 from svgf_cl.frame import Shape
 
 SAMPLES = 1500
-MOVING = 0.5  # of the fastest motion: what moves less is not looked at
+MOVING = 0.5  # of the fastest motion: slower pixels are not used
 ENOUGH = 100  # pixels
-BETTER = 0.8  # an error that much smaller tells
-NOTICED = 0.2  # pixels off: surfaces that are nearer than that to where motion leads have moved as it says
-ALIKE = 1.05  # errors nearer to each other than this do not tell two mistakes apart
-SEEN = 0.4  # share of pixels that must have been in the picture before
+BETTER = 0.8  # an error smaller by this factor is clearly better
+NOTICED = 0.2  # pixels: motion with a smaller error is right
+ALIKE = 1.05  # if the ratio of two errors is below this, the two mistakes cannot be distinguished
+SEEN = 0.4  # least share of pixels that were in the picture before
 LOST = 0.5  # of the difference between any two places
-TURNS = 3  # of the search for the jitter
-REACH = 1.5  # pixels
-JITTER = 0.4  # pixels of difference that jitter makes where nothing moves
-TILES = 8  # along each side of the picture, that may move by themselves
+TURNS = 3  # iterations of the search for the jitter
+REACH = 1.5  # pixels, the greatest offset
+JITTER = 0.4  # pixels of difference that jitter causes if nothing moves
+TILES = 8  # along each side of the picture; each tile may have its own offset
 
 
 @dataclass(frozen=True)
@@ -39,11 +40,11 @@ class Mistake:
     ----------
     what, cure : str
     scale : (float, float)
-        By which x and y that were given are to be multiplied,
+        Factors for x and y.
     per_pixel : bool
-        and then by the image's width and height.
+        Whether x and y are multiplied by the image's width and height, too.
     swapped : bool
-        x and y are to be exchanged first.
+        Whether x and y are exchanged first.
     """
 
     what: str
@@ -53,13 +54,13 @@ class Mistake:
     swapped: bool = False
 
     def undone(self, motion: Array, size: Shape) -> Array:
-        """The corrected motion (N, 2) in an image of this (height, width)."""
+        """Return the corrected motion (N, 2) in an image of this (height, width)."""
         straight = motion[:, ::-1] if self.swapped else motion
         meant: Array = straight * self.scale * ((size[1], size[0]) if self.per_pixel else (1, 1))
         return meant
 
     def and_also(self, sign: Mistake) -> Mistake:
-        """Both mistakes at once."""
+        """Return both mistakes at once."""
         scale = self.scale[0] * sign.scale[0], self.scale[1] * sign.scale[1]
         return Mistake(f"{self.what}, {sign.what}", f"{self.cure}, {sign.cure}", scale, self.per_pixel, self.swapped)
 
@@ -74,14 +75,17 @@ OTHERS = (
     Mistake("in NDC, -1 to 1 across the image", "multiply by half the width and height", (0.5, 0.5), per_pixel=True),
     Mistake("x and y are exchanged", "exchange x and y", swapped=True),
 )
-# Simple ones first: of two that fit alike the first is named.
+# Simple ones first: of two that fit equally well, the first is reported.
 MISTAKES = (*SIGNS, *OTHERS, *(other.and_also(sign) for other in OTHERS for sign in SIGNS))
 AS_GIVEN = Mistake("", "")
 
 
 def misfits(before: View, now: View) -> Array | None:
-    """Whether anything moves; how much features change from pixel to pixel, differ between any two pixels, and differ
-    from the frame before: as given, with every cure, and where pieces of the picture may move by themselves.
+    """Return the measurements of a frame in one row.
+
+    They are: whether anything moves; the change of features from pixel to pixel; their difference between any two
+    pixels; and their differences from the previous frame: with motion as given, with every correction, and with an
+    offset for every tile.
     """
     speed = over_channels(np.maximum, np.abs(now.motion))
     fastest = float(np.percentile(speed[now.hit], 99)) if now.hit.any() else 0.0
@@ -101,9 +105,9 @@ def misfits(before: View, now: View) -> Array | None:
     return np.array([fastest > 0, np.hypot(*gradient.T).sum(axis=0).mean(), between_any(here), *found])
 
 
-@lru_cache(maxsize=2)  # of a frame and the one before it
+@lru_cache(maxsize=2)  # for a frame and the previous one
 def features(view: View) -> Array:
-    """Features that stay on surfaces, (h, w, C): normal, albedo, depth edges; blurred to be smooth between pixels."""
+    """Return features that stay on surfaces, (h, w, C): normal, albedo and depth edges, blurred to be smooth."""
     log_depth = -np.log(np.where(view.hit, view.nearness, np.max(view.nearness, initial=1e-30)))
     steps = np.clip(log_depth - blurred(blurred(log_depth)), -1, 1)
     fields = [np.clip(view.normal, -1, 1), steps[..., None]]
@@ -113,21 +117,22 @@ def features(view: View) -> Array:
 
 
 def blurred(values: Array) -> Array:
-    """Weighted means over 3 x 3 pixels of (h, w, ...)."""
+    """Return weighted means over 3 x 3 pixels of (h, w, ...)."""
     for dx, dy in ((1, 0), (0, 1)):
         values = 0.25 * (shifted(values, -dx, -dy) + 2 * values + shifted(values, dx, dy))
     return values
 
 
 def between_any(here: Array) -> float:
-    """How much, on average, two places (N, C) differ."""
+    """Return how much two places (N, C) differ on average."""
     return float(np.abs(here - here[::-1]).sum(axis=-1).mean())
 
 
 def difference(here: Array, past: Array, x: Array, y: Array, tile: Whole) -> float:
-    """How much, on average, what is seen `here` (N, C) differs from the frame before at x, y.
+    """Return how much the features `here` (N, C) differ from the previous frame at x, y on average.
 
-    All pixels of a tile may be displaced alike, by up to `REACH`: what is left over differs. Gauss-Newton.
+    Each tile may have one offset of up to `REACH` for all its pixels. The Gauss-Newton method finds the offset with the
+    smallest difference.
     """
     height, width = past.shape[:2]
     inside = (x >= 0) & (x <= width - 1) & (y >= 0) & (y <= height - 1)
@@ -138,7 +143,7 @@ def difference(here: Array, past: Array, x: Array, y: Array, tile: Whole) -> flo
     for _ in range(TURNS):
         there, slope = bilinear(past, x + offset[tile, 0], y + offset[tile, 1])
         off = here - there
-        trust = 1 / (1 + (off / 0.1) ** 2)  # what was hidden does not count
+        trust = 1 / (1 + (off / 0.1) ** 2)  # pixels that were hidden hardly count
         system, right = np.full((len(offset), 2, 2), 1e-3) * np.eye(2), np.zeros_like(offset)
         np.add.at(system, tile, np.einsum("nci,nc,ncj->nij", slope, trust, slope))
         np.add.at(right, tile, np.einsum("nci,nc,nc->ni", slope, trust, off))
@@ -148,7 +153,7 @@ def difference(here: Array, past: Array, x: Array, y: Array, tile: Whole) -> flo
 
 
 def bilinear(values: Array, x: Array, y: Array) -> tuple[Array, Array]:
-    """Values (h, w, C) between pixels: (N, C), and their gradient (N, C, 2)."""
+    """Return values (h, w, C) between pixels, (N, C), and their gradient, (N, C, 2)."""
     height, width = values.shape[:2]
     left, top = (np.clip(np.floor(p), 0, size - 2).astype(int) for p, size in ((x, width), (y, height)))
     fx, fy = (np.clip(x - left, 0, 1)[:, None], np.clip(y - top, 0, 1)[:, None])
@@ -158,7 +163,7 @@ def bilinear(values: Array, x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def judge(sums: Array) -> list[Finding | Unknown]:
-    """A correction that fits clearly better shows the mistake; one that fits equally well cannot be excluded."""
+    """Report the mistake whose correction fits clearly better; one that fits equally well cannot be excluded."""
     moves, change, *differences = sums.tolist()
     anywhere, given, *cures, local = np.array(differences) / max(change, 1e-12)
     cured = np.array(cures)

@@ -1,4 +1,4 @@
-"""Whether the depth of a frame is noisy: under depth of field, motion blur and fog, or where rays are jittered."""
+"""Detects frames with noisy depth (depth of field, motion blur, fog, jittered rays), and frames that lack motion."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from svgf_cl.frame import Frame
 Array = npt.NDArray[np.float32]
 
 LEAST_LENGTH = 1e-6  # of a normal
-# Along a row of pixels on a plane, one over depth rises evenly. By this share of it a pixel is off if depth is noisy.
+# In a row of pixels on a plane, one over depth changes evenly. If depth is noisy, pixels deviate by this share of it.
 UNEVEN = 5e-4
-PLANE = 0.999  # cosine between normals of one plane
-APART = 0.05  # by which a pixel lies beyond all that was around it before
-MOVED = 0.1  # share of such pixels where things moved, and not noise alone
-HOLES = 0.02  # share of pixels that hit nothing between two that did: rays that were scattered before they hit
+PLANE = 0.999  # least cosine between normals of one plane
+APART = 0.05  # a pixel that has moved exceeds all values that were around it by this
+MOVED = 0.1  # share of such pixels; if there are more, it is not only noise
+HOLES = 0.02  # share of pixels that hit nothing between two that did, because their rays were scattered
 
 
 def has_noisy_depth(frame: Frame) -> bool:
@@ -24,7 +24,7 @@ def has_noisy_depth(frame: Frame) -> bool:
     left, middle, right = (np.s_[:, place : frame.shape[1] - 2 + place] for place in range(3))
     if (hit[left] & ~hit[middle] & hit[right]).sum() > HOLES * hit.size:
         return True
-    with np.errstate(invalid="ignore"):  # an infinite normal is of no plane
+    with np.errstate(invalid="ignore"):  # an infinite normal belongs to no plane
         unit = frame.normal / np.maximum(np.linalg.norm(frame.normal, axis=-1, keepdims=True), LEAST_LENGTH)
     is_flat = [np.sum(unit[side] * unit[middle], axis=-1) > PLANE for side in (left, right)]
     plane = hit[left] & hit[middle] & hit[right] & is_flat[0] & is_flat[1]
@@ -34,9 +34,9 @@ def has_noisy_depth(frame: Frame) -> bool:
 
 
 def lacks_motion(frame: Frame, previous: Frame) -> bool:
-    """Whether motion is 0 in the whole frame, but surfaces are in other places than in the previous frame.
+    """Whether motion is 0 in the whole frame, although surfaces have moved since the previous frame.
 
-    So it is in frames of Blender with motion blur. Surfaces are told by their albedo, or by their normals.
+    This is so in Blender's frames with motion blur. Surfaces are recognised by their albedo, or else by their normals.
     """
     if np.any(frame.motion):
         return False
@@ -47,9 +47,9 @@ def lacks_motion(frame: Frame, previous: Frame) -> bool:
 
 
 def extremes(value: Array) -> tuple[Array, Array]:
-    """The least and the greatest value (H, W, C) of each pixel and its eight neighbours; NaN does not count.
+    """Return the least and the greatest value (H, W, C) of each pixel and its eight neighbours; NaN does not count.
 
-    What is filtered stays between them, so nothing is left behind where motion is wrong.
+    A filtered value that is limited to this range leaves no ghost where motion is wrong.
     """
     padded = np.pad(value, ((1, 1), (1, 1), (0, 0)), mode="edge")
     found = []

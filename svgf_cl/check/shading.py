@@ -1,11 +1,12 @@
-"""Colour is proportional to albedo and contains emission; if it was encoded for a display, neither is true.
+"""Checks that colour is proportional to albedo, contains emission, and is the sum of its parts.
 
-Neighbours of one direction get the same light, and their colours are as their albedos. In spite of noise that holds in
-the mean: of two colours, each divided by its own albedo, (a - b) / (a + b) is 0 on average. The same is tried with
-colour or albedo decoded first: where it holds then, and not without, they were encoded.
+Neighbouring pixels with the same normal get the same light, so their colours have the ratio of their albedos. Despite
+noise this is true on average: if a and b are two colours, each divided by its albedo, the mean of (a - b) / (a + b) is
+0. The same is tested with corrections, such as colour or albedo decoded from sRGB. If the mean is 0 only after a
+correction, the mistake is found.
 
-All is kept apart by how bright the albedos are and by how much they differ: an offset, such as gloss, does not pass for
-a curve then.
+Pairs are divided into cells by the brightness of their albedos and by the ratio of these. Then an offset, such as
+gloss, does not look like a curve.
 """
 
 from __future__ import annotations
@@ -20,25 +21,26 @@ from svgf_cl.check.finding import Finding, Unknown, percent
 from svgf_cl.check.view import Array, View, Whole, over_channels, sample
 from svgf_cl.frame import CARRIED
 
-DARK = 0.02  # albedo that is too little to tell
-# Where cells begin: of albedo, the first at 0; of the logarithm of the ratio of two.
+DARK = 0.02  # an albedo below this is not used
+# Where cells begin: by albedo (the first cell begins at 0), and by the logarithm of the ratio of two albedos.
 LEVELS, CONTRASTS = (0.15, 0.35), (0.15, 0.4, 0.8)
 CELLS = (len(LEVELS) + 1) * len(CONTRASTS)
 SAMPLES = 12000  # pixels, each with two neighbours
 ENOUGH = 1000  # pairs in a cell
-VARIED = 2  # cells: in a single one an offset looks like a curve
-# Median over cells of the mean of (a - b) / (a + b), as a share of that of albedo: up to where it passes for 0; from
-# where on it does not, and how much farther from 0 than that of the cure.
+VARIED = 2  # least number of cells: in a single cell an offset looks like a curve
+# Limits for the median over cells of the mean of (a - b) / (a + b), as a share of the same for albedo. Up to the first
+# it counts as 0. A mistake needs more than the second, and more than the third times the value after the correction.
 HOLDS, FAILS, FARTHER = 0.15, 0.25, 2.5
-MOST = 0.75  # of the pairs must be in cells that a cure betters
-DARKER = 0.02  # than its emission alone, relative: what half floats leave
-SOME = 0.5  # of what shines, more than moves on in a frame
-# What color is the sum of, with emission; by how much it may be off, relative to both; in how many of the pixels not.
+MOST = 0.75  # least share of pairs in cells that a correction improves
+DARKER = 0.02  # relative difference from emission that 16-bit floats may cause
+SOME = 0.5  # share of the pixels with emission; more than objects that move in a frame can cause
+# The fields whose sum, with emission, is color; the relative error of the sum that is allowed; and the share of pixels
+# that may exceed it.
 PAIRS, ROUNDED, FEW = (("direct", "indirect"), ("diffuse", "specular")), 0.01, 0.01
 
 
 def srgb_decoded(values: Array) -> Array:
-    """Linear light of a displayed value, by the curve of IEC 61966-2-1."""
+    """Return the linear light of a displayed value, by the curve of IEC 61966-2-1."""
     positive = np.maximum(values, 0)
     return np.where(positive <= 0.04045, positive / 12.92, ((positive + 0.055) / 1.055) ** 2.4)
 
@@ -51,9 +53,9 @@ class Mistake:
     ----------
     field, what, cure : str
     color, albedo : callable
-        What undoes an encoding.
+        The corrections of the values of both.
     arranged : str
-        How colour is put beside the G-buffer to undo it: ``as given``, ``late`` or ``flipped``.
+        How colour is combined with the G-buffer for the correction: ``as given``, ``late`` or ``flipped``.
     """
 
     field: str
@@ -65,25 +67,26 @@ class Mistake:
 
 
 ENCODED = "encoded for a display: sRGB, gamma or tone-mapped"
-LINEAR = "hand over linear radiance, before any view transform"
+LINEAR = "give linear radiance, before any view transform"
 MISTAKES = (
     Mistake("albedo", "encoded in sRGB", "decode textures to linear, as the renderer does", albedo=srgb_decoded),
     Mistake("color", ENCODED, LINEAR, color=srgb_decoded),
     Mistake("color", ENCODED, LINEAR, color=lambda color: color / np.maximum(1 - color, 1e-4)),
     Mistake("color", "divided by albedo", "multiply it by albedo again, or leave albedo out", albedo=np.ones_like),
-    Mistake("color", "of the frame before, beside albedo", "hand over fields of one moment", arranged="late"),
-    Mistake("color", "upside down, beside albedo", "row 0 is on top in every field: flip it", arranged="flipped"),
+    Mistake("color", "of the previous frame, compared with albedo", "give fields of one frame", arranged="late"),
+    Mistake("color", "upside down, compared with albedo", "row 0 must be at the top: flip it", arranged="flipped"),
 )
 AS_GIVEN = Mistake("", "", "")
 
 
 def imbalances(before: View, now: View) -> Array | None:
-    """Of pairs of neighbours, in cells by albedo and contrast, as given and with every cure: their number, their sum of
-    (a - b) / (a + b), a being that of more albedo, and that of their albedos.
+    """Measure pairs of neighbours in cells by albedo and contrast, as given and with every correction.
 
     Returns
     -------
     (1 + mistakes, 3, CELLS)
+        The number of pairs, the sum of (a - b) / (a + b), where a belongs to the greater albedo, and the same sum for
+        their albedos.
     """
     if now.albedo is None or before.albedo is None:
         return None
@@ -103,11 +106,13 @@ def imbalances(before: View, now: View) -> Array | None:
 
 
 def neighbors(view: View, color: Array) -> tuple[Array, Array, Whole]:
-    """Colour and albedo (2, n) of neighbours of one direction, the greater albedo first; and the cell of each pair."""
-    assert view.albedo is not None  # seen to by `imbalances`
+    """Return colour and albedo (2, n) of neighbours with one normal, the greater albedo first, and each pair's cell."""
+    assert view.albedo is not None  # `imbalances` has checked it
     width = view.shape[1]
     pixels = sample(view.reflecting, SAMPLES)
-    pixels = pixels[pixels < view.depth.size - width]  # what is right of a row's end lies elsewhere: it is not alike
+    pixels = pixels[
+        pixels < view.depth.size - width
+    ]  # a pair over a row's end is far apart, so the tests below reject it
     pair = np.concatenate([np.stack([pixels, pixels + step]) for step in (1, width)], axis=1)
     normal, depth = view.normal.reshape(-1, 3)[pair], view.depth.ravel()[pair]
     alike = view.reflecting.ravel()[pair[1]] & ((normal[0] * normal[1]).sum(axis=-1) > 0.99)
@@ -123,14 +128,14 @@ def neighbors(view: View, color: Array) -> tuple[Array, Array, Whole]:
 
 
 def judge_curve(sums: Array) -> list[Finding | Unknown]:
-    """Find the one correction with which colour follows albedo."""
+    """Report the mistake whose correction makes colour proportional to albedo."""
     cells = (sums[:, 0] >= ENOUGH).all(axis=0)
     if np.count_nonzero(cells) < VARIED:
         return [Unknown(CURVE.topic, "albedo hardly changes across surfaces")]
     count, imbalance, contrast = np.moveaxis(sums[..., cells], 1, 0)
     off = np.abs(imbalance) / contrast
     given, *fits = map(weighted_median, off, count)
-    # Colour that is out of place never has more contrast than albedo tells.
+    # Colour in the wrong place never has more contrast than albedo.
     possible = [mistake.arranged == AS_GIVEN.arranged or imbalance[0].sum() < 0 for mistake in MISTAKES]
     cured = np.where(possible, fits, np.inf)
     best = int(np.argmin(cured))
@@ -151,19 +156,23 @@ def judge_curve(sums: Array) -> list[Finding | Unknown]:
             )
         ]
     measured = (
-        f"from pixel to pixel it misses albedo's contrast by {100 * given:.0f} %, by {100 * least:.0f} % with the cure"
+        f"its contrast between pixels differs from albedo's by {100 * given:.0f} %, "
+        f"by {100 * least:.0f} % after the correction"
     )
     return [Finding(mistake.field, mistake.what, measured, mistake.cure)]
 
 
 def weighted_median(values: Array, weights: Array) -> float:
-    """The value (n) with as much weight (n) below it as above."""
+    """Return the value (n) that has as much weight (n) below it as above it."""
     order = np.argsort(values)
     return float(values[order][np.searchsorted(np.cumsum(weights[order]), 0.5 * weights.sum())])
 
 
 def shining(view: View) -> Array | None:
-    """Pixels that shine; those darker than what they emit; of these, those that are not so once decoded from sRGB."""
+    """Count pixels with emission, those darker than their emission, and those of these that are not so after decoding.
+
+    Decoding is from sRGB.
+    """
     if view.emission is None:
         return None
     emission, color = (
@@ -178,7 +187,7 @@ def shining(view: View) -> Array | None:
 
 
 def judge_shining(sums: Array) -> list[Finding]:
-    """Colour contains emission."""
+    """Report colour that does not contain emission."""
     pixels, darker, decoded = sums
     if darker <= SOME * pixels:
         return []
@@ -189,7 +198,7 @@ def judge_shining(sums: Array) -> list[Finding]:
 
 
 def unequal(view: View) -> Array | None:
-    """Of each of `PAIRS`, its pixels, and those in which it does not add up to color: (2, pairs)."""
+    """Count for each of `PAIRS` its pixels, and those where the sum is not color: (2, pairs)."""
     given = view.frame.present()
     emission = given.get("emission", 0)
     found = np.zeros((2, len(PAIRS)))
@@ -197,14 +206,14 @@ def unequal(view: View) -> Array | None:
         whole = given["color"] if "color" in given else given["direct"] + given["indirect"] + emission
         if pair[0] in given and pair[1] in given and ("color" in given or pair != PAIRS[0]):
             total = given[pair[0]] + given[pair[1]] + emission
-            with np.errstate(invalid="ignore"):  # what is not finite is another matter
+            with np.errstate(invalid="ignore"):  # another check finds values that are not finite
                 off = np.abs(total - whole) > ROUNDED * (np.abs(total) + np.abs(whole)) + 1e-6
             found[:, index] = view.frame.depth.size, np.count_nonzero(over_channels(np.logical_or, off))
     return found if found.any() else None
 
 
 def judge_parts(sums: Array) -> list[Finding]:
-    """The parts of split light add up to all light."""
+    """Report parts of light whose sum is not color."""
     return [
         Finding(
             a,

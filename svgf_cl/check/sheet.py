@@ -1,4 +1,4 @@
-"""A picture of the fields of a frame, for what one would rather see than be told."""
+"""Draws the fields of a frame in one picture, to look for mistakes."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from svgf_cl.io.panels import contact_sheet
 
 
 def sheet(before: Frame, now: Frame) -> Bytes:
-    """Lay out the fields of a frame, and where it differs from the frame before once that is moved along.
+    """Draw the fields of a frame, and its difference from the previous frame moved by the motion vectors.
 
     Returns
     -------
     (H, W, 3) uint8
-        Normals as (n + 1) / 2; the nearest depth white; motion by its direction (hue: red where it leads to the right,
-        then yellow, green down, blue) and length (brightness, up to that of the fastest); ids in arbitrary colours.
-        The difference is black where motion leads to the same surface.
+        Normals are drawn as (n + 1) / 2. The nearest depth is white. Motion is drawn by its direction (hue: red to the
+        right, then yellow, green down, blue) and its length (brightness, up to the fastest). Ids have arbitrary
+        colours. The difference is black where motion leads to the same surface.
     """
     view = View.of(now)
     nearest = view.nearness.max(initial=1e-30)
@@ -28,7 +28,7 @@ def sheet(before: Frame, now: Frame) -> Bytes:
         "normal": as_is(0.5 * view.normal + 0.5),
         "depth": as_is(grey(view.nearness / nearest)),
         "motion": as_is(wheel(view.motion)),
-        "difference once moved": as_is(grey(left_over(View.of(before), view))),
+        "difference after motion": as_is(grey(left_over(View.of(before), view))),
     }
     if view.albedo is not None:
         panels["albedo"] = to_bytes(view.albedo)
@@ -39,14 +39,14 @@ def sheet(before: Frame, now: Frame) -> Bytes:
 
 
 def left_over(before: View, now: View) -> Array:
-    """How much (h, w) what stays on surfaces differs from the frame before where motion leads, 0 to 1."""
+    """Return the difference of features from the previous frame at the place where motion leads, (h, w), from 0 on."""
     y, x = np.indices(now.shape)
     there, _ = bilinear(features(before), (x + now.motion[..., 0]).ravel(), (y + now.motion[..., 1]).ravel())
     return np.where(now.hit, np.abs(features(now) - there.reshape(*now.shape, -1)).sum(axis=-1), 0)
 
 
 def wheel(motion: Array) -> Array:
-    """Direction as hue, length as brightness: (h, w, 2) to (h, w, 3)."""
+    """Return direction as hue and length as brightness: (h, w, 2) to (h, w, 3)."""
     length = np.linalg.norm(motion, axis=-1)
     angle = np.arctan2(motion[..., 1], motion[..., 0])
     thirds = angle[..., None] - 2 * np.pi / 3 * np.arange(3)
@@ -56,10 +56,10 @@ def wheel(motion: Array) -> Array:
 
 
 def grey(values: Array) -> Array:
-    """One value for all three channels, (h, w, 3)."""
+    """Return the value in all three channels, (h, w, 3)."""
     return np.broadcast_to(values[..., None], (*values.shape, 3))
 
 
 def as_is(values: Array) -> Bytes:
-    """Values of 0 to 1 in 8 bits, without exposure or curve."""
+    """Return values of 0 to 1 in 8 bits, without exposure or curve."""
     return np.rint(255 * np.clip(values, 0, 1)).astype(np.uint8)

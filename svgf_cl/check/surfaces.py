@@ -1,6 +1,6 @@
-"""What becomes of a surface from one frame to the next: its id, the direction it faces, its depth.
+"""Checks that a surface keeps its id and its normal from one frame to the next, and that its depth changes as given.
 
-Pixels that show the same surface in both frames are found by motion, and told from chance by depth.
+Motion leads to the pixels that show the same surface in both frames; their depth confirms it.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from svgf_cl.check.finding import Finding, Unknown, percent
 from svgf_cl.check.view import Array, Mask, View, Whole, over_channels, sample, shifted
 from svgf_cl.filters import Settings
 
-EDGE = 0.1  # relative difference of depth between surfaces, not within one
+EDGE = 0.1  # least relative difference of depth between two surfaces
 ENOUGH = 300  # pixels
 SAMPLES = 3000
-KEPT = 5e-4  # between normals that are the same
-TURNED = 2e-3  # radians by which a camera turns that would show
-FLAT = 1e-4  # between neighbours on a plane
-BETTER = 0.8  # an error that much smaller tells
+KEPT = 5e-4  # greatest distance between normals that are the same
+TURNED = 2e-3  # radians: least turn of a camera that is visible in normals
+FLAT = 1e-4  # greatest difference of normals between neighbours on a plane
+BETTER = 0.8  # an error smaller by this factor is clearly better
 
 
-@lru_cache(maxsize=1)  # several checks want it of the same pair
+@lru_cache(maxsize=1)  # several checks need it for the same pair
 def followed(before: View, now: View) -> tuple[Mask, tuple[Whole, Whole]]:
-    """Which pixels (h, w) show a surface that the frame before shows too, and in which row and column (n) that does."""
+    """Return the pixels (h, w) whose surface the previous frame shows too, and its rows and columns there (n)."""
     height, width = now.shape
     y, x = np.indices(now.shape)
     columns, rows = (np.rint(p + now.motion[..., axis]) for axis, p in enumerate((x, y)))
@@ -37,16 +37,16 @@ def followed(before: View, now: View) -> tuple[Mask, tuple[Whole, Whole]]:
     return same, (there[0][same], there[1][same])
 
 
-@lru_cache(maxsize=2)  # of a frame and the one before it
+@lru_cache(maxsize=2)  # for a frame and the previous one
 def interior(view: View) -> Mask:
-    """Pixels without an edge of depth within two pixels."""
+    """Return the pixels without an edge of depth within two pixels."""
     near = np.stack([shifted(view.nearness, dx, dy) for dx in (-2, 0, 2) for dy in (-2, 0, 2)])
     smooth: Mask = view.hit & (np.ptp(near, axis=0) < EDGE * view.nearness)
     return smooth
 
 
 def names(before: View, now: View) -> Array | None:
-    """Pixels found again; of the same id there; of the id that most of their object has there."""
+    """Count pixels found in the previous frame, those with the same id there, and those with their object's main id."""
     if now.id is None or before.id is None:
         return None
     if now.is_small:
@@ -60,7 +60,7 @@ def names(before: View, now: View) -> Array | None:
 
 
 def judge_names(sums: Array) -> list[Finding | Unknown]:
-    """Objects that stay together but change their id were renumbered."""
+    """Report objects whose pixels stay together but change their id: they were renumbered."""
     found, kept, together = sums
     if found < ENOUGH:
         return [Unknown(NAMES.topic, "too few surfaces are visible in the previous frame, too")]
@@ -74,7 +74,10 @@ def judge_names(sums: Array) -> list[Finding | Unknown]:
 
 
 def turns(before: View, now: View) -> Array | None:
-    """Pixels on planes, found again: all; of the same normal; of normals turned all alike; whether the camera turns."""
+    """Count pixels on planes that are in both frames: all, those with the same normal, those that turn together.
+
+    The last value says whether the camera turns.
+    """
     same, there = followed(before, now)
     bends = [over_channels(np.maximum, np.abs(shifted(now.normal, *step) - now.normal)) for step in ((1, 0), (0, 1))]
     plane = sample((np.maximum(*bends) < FLAT)[same] & before.hit[there], SAMPLES)
@@ -90,7 +93,7 @@ def turns(before: View, now: View) -> Array | None:
 
 
 def rotation_between(normal: Array, past: Array) -> Array:
-    """The rotation (3, 3) that turns most normals (n, 3) into their past ones: Kabsch's, each trusted as it fits."""
+    """Return the rotation (3, 3) from most normals (n, 3) to their past ones: Kabsch's method, with weights by fit."""
     weight = np.ones(len(normal))
     for _ in range(8):
         u, _, v = np.linalg.svd((past * weight[:, None]).T @ normal)
@@ -101,7 +104,7 @@ def rotation_between(normal: Array, past: Array) -> Array:
 
 
 def judge_turns(sums: Array) -> list[Finding | Unknown]:
-    """If most normals turn together, it is the camera that turns."""
+    """Report normals in view space: most of them turn together, with the camera."""
     found, kept, alike, turned = sums
     if alike > 0.6 * found:
         measured = f"they turn together from frame to frame in {percent(alike, found)} on planes"
@@ -113,9 +116,14 @@ def judge_turns(sums: Array) -> list[Finding | Unknown]:
 
 
 def deeper(before: View, now: View) -> Array | None:
-    """Pixels found again; whether there is a third component; pixels whose depth differs by more than history bears
-    from what is expected without it, and with it; how far, as a share of depth, each reading of it is off: none, as
-    given, negated, the previous depth itself.
+    """Measure motion's third component on surfaces that are in both frames.
+
+    Returns
+    -------
+    (8,) or None
+        The number of pixels; whether there is a third component; the number of pixels that lose their history without
+        it, and with it; and the error of each interpretation as a share of depth: none, as given, negated, and the
+        previous depth itself.
     """
     same, there = followed(before, now)
     if not same.any():
@@ -129,7 +137,7 @@ def deeper(before: View, now: View) -> Array | None:
 
 
 def judge_deeper(sums: Array) -> list[Finding | Unknown]:
-    """The right interpretation is nearest to the actual change of depth."""
+    """Report the interpretation that is nearest to the actual change of depth, if it is not the right one."""
     found, there, lost, refused, none, given, negated, absolute = sums
     if not there:
         if lost < 0.5 * found:

@@ -1,4 +1,4 @@
-"""What single numbers tell: not finite, negative, one value everywhere, out of range, clipped."""
+"""Checks single values: not finite, negative, the same everywhere, out of range, or clipped."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from svgf_cl.frame import CARRIED, CHANNELS
 
 FIELDS = tuple(name for name in CHANNELS if name != "id")
 POSITIVE = tuple(name for name in FIELDS if name not in ("normal", "depth", "motion"))
-# What is infinite in its place: the depth of a miss, the length of a ray that left the scene.
+# Fields that may be infinite: the depth of a miss, and the length of a ray that left the scene.
 ENDLESS = ("depth", "hit_distance")
 CONSTANT = ("color", "normal", "depth", "albedo", "id")
 OPTIONAL = ("albedo", "id")
-# Pixels enough to tell a rule of the renderer from its accident.
+# Share of pixels; if there are more, it is no accident.
 SOME = 1e-4
-UNIT = 0.02  # of a length: what half floats and interpolation leave
+UNIT = 0.02  # relative error of a length that 16-bit floats and interpolation may cause
 
 
 def not_finite(view: View) -> Array:
-    """Of each of `FIELDS`, its pixels, and those that hold NaN or infinity: (2, F)."""
+    """Count for each of `FIELDS` its pixels, and those with NaN or infinity: (2, F)."""
     found = np.zeros((2, len(FIELDS)))
     for index, name in enumerate(FIELDS):
         values = getattr(view.frame, name)
@@ -33,12 +33,12 @@ def not_finite(view: View) -> Array:
 
 
 def any_channel(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Whether it holds in any channel of a pixel: (H, W) from (H, W) or (H, W, C)."""
+    """Return whether any channel of a pixel is set: (H, W) from (H, W) or (H, W, C)."""
     return over_channels(np.logical_or, np.atleast_3d(mask))
 
 
 def judge_finite(sums: Array) -> list[Finding]:
-    """Nothing may be infinite but what never ends."""
+    """Report NaN, and infinity except in `ENDLESS`."""
     cure = "the pixels are dropped; look for divisions by 0 and paths of probability 0"
     return [
         Finding(
@@ -54,13 +54,13 @@ def judge_finite(sums: Array) -> list[Finding]:
 
 
 def negative(view: View) -> Array:
-    """Of each of `POSITIVE`, its pixels, and those with a clearly negative channel: (2, F)."""
+    """Count for each of `POSITIVE` its pixels, and those with a clearly negative channel: (2, F)."""
     found = np.zeros((2, len(POSITIVE)))
     for index, name in enumerate(POSITIVE):
         values = getattr(view.frame, name)
         if values is not None:
             below = np.zeros_like(values, np.bool_)
-            if (values < 0).any():  # else there is no need for the mean, which takes long
+            if (values < 0).any():  # else the mean, which is slow, is not needed
                 finite = np.nan_to_num(values, posinf=0, neginf=0)
                 below = finite < -1e-3 * np.abs(finite).mean(dtype=np.float64)
             found[:, index] = view.frame.depth.size, np.count_nonzero(any_channel(below))
@@ -68,7 +68,7 @@ def negative(view: View) -> Array:
 
 
 def judge_negative(sums: Array) -> list[Finding]:
-    """Light, reflectance, roughness and lengths are never below 0."""
+    """Report light, reflectance, roughness and lengths below 0."""
     cure = "give the samples before pixel filters with negative lobes and before colour conversions"
     return [
         Finding(name, "negative", percent(count, pixels), cure, "warning" if name in CARRIED else "error")
@@ -78,7 +78,7 @@ def judge_negative(sums: Array) -> list[Finding]:
 
 
 def constant(view: View) -> Array | None:
-    """Of each of `CONSTANT`, the frames that have it, and those in which it is one value wherever something was hit."""
+    """Count for each of `CONSTANT` the frames that have it, and those where all hits have one value."""
     if np.count_nonzero(view.hit) < 2:
         return None
     inside = {name: values[view.hit] for name in CONSTANT if (values := getattr(view, name)) is not None}
@@ -90,7 +90,7 @@ def constant(view: View) -> Array | None:
 
 
 def on_a_plane(view: View) -> bool:
-    """Whether all that was hit lies on one plane, as far as depth can tell."""
+    """Whether all hits lie on one plane, by their depth."""
     x, y = (axis[view.hit] for axis in pixel_centers(view.shape))
     nearness, columns = view.nearness[view.hit], np.stack([x, y, np.ones_like(x)], axis=-1)
     off = nearness - columns @ np.linalg.lstsq(columns, nearness, rcond=None)[0]
@@ -98,7 +98,7 @@ def on_a_plane(view: View) -> bool:
 
 
 def judge_constant(sums: Array) -> list[Finding]:
-    """A field that is the same everywhere is a placeholder."""
+    """Report fields that have one value everywhere: they are placeholders."""
     return [
         Finding(
             name,
@@ -115,8 +115,11 @@ def judge_constant(sums: Array) -> list[Finding]:
 
 
 def lengths(view: View) -> Array | None:
-    """Pixels with a depth; those of unit length, of unit length once decoded from 0..1, of length 0, too long."""
-    normal = view.normal[(view.depth > 0) & (view.depth < view.depth.max())]  # the greatest depth may stand for a miss
+    """Count pixels with a depth, and those whose normal has unit length, unit length after decoding, length 0, or more.
+
+    Decoding is from 0..1.
+    """
+    normal = view.normal[(view.depth > 0) & (view.depth < view.depth.max())]  # the greatest depth may mean a miss
     length, decoded = np.linalg.norm(normal, axis=-1), np.linalg.norm(2 * normal - 1, axis=-1)
     encoded = (np.abs(decoded - 1) < UNIT) & (normal.min(axis=-1, initial=1) >= 0)
     counts = (np.abs(length - 1) < UNIT, encoded, length < 1e-6, length > 1 + UNIT)
@@ -124,7 +127,7 @@ def lengths(view: View) -> Array | None:
 
 
 def judge_lengths(sums: Array) -> list[Finding]:
-    """Normals are unit vectors where something was hit."""
+    """Report normals that are no unit vectors where something was hit."""
     hit, unit, encoded, zero, long = sums
     if encoded > 0.9 * hit and unit < 0.5 * hit:
         measured = f"2 n - 1 has unit length in {percent(encoded, hit)}, n in {percent(unit, hit)}"
@@ -132,7 +135,7 @@ def judge_lengths(sums: Array) -> list[Finding]:
     if zero > 1e-3 * hit:
         cure = "give every surface its shading normal, and depth +inf where there is no surface"
         return [Finding("normal", "zero where there is a depth", f"in {percent(zero, hit)}", cure)]
-    # The mean of several samples is shorter, along edges and out of focus; nothing makes it longer.
+    # The mean of several samples is shorter, at edges and out of focus, but it is never longer.
     if long > 0.01 * hit or unit < 0.1 * hit:
         measured = f"off by more than {100 * UNIT:g} % in {percent(hit - unit, hit)}"
         return [Finding("normal", "not of unit length", measured, "normalise after interpolating or transforming")]
@@ -140,9 +143,9 @@ def judge_lengths(sums: Array) -> list[Finding]:
 
 
 def misses(view: View) -> Array:
-    """Pixels; of those with a normal: of depth below 0; of depth 0; of a finite depth that must stand for a miss.
+    """Count pixels, and those with a normal whose depth is below 0, 0, or a finite number that must mean a miss.
 
-    Without a normal, the denoiser takes all these for misses.
+    Without a normal, the denoiser treats all these as misses.
     """
     depth, seen = view.frame.depth, has_normal(view.frame.normal)
     hit = seen & in_range(depth)
@@ -151,7 +154,7 @@ def misses(view: View) -> Array:
 
 
 def judge_misses(sums: Array) -> list[Finding]:
-    """Depth is above 0, and +inf where nothing was hit."""
+    """Report depth that is not above 0, or finite where nothing was hit."""
     pixels, *bad = sums
     mistakes = (
         ("negative", "negate the z of a camera that looks along -z"),
@@ -166,13 +169,13 @@ def judge_misses(sums: Array) -> list[Finding]:
 
 
 def hits(view: View) -> Array:
-    """Pixels where the denoiser sees a surface, and those that have a normal."""
+    """Count pixels where the denoiser sees a surface, and those that have a normal."""
     seen = has_normal(view.frame.normal)
     return np.array([np.count_nonzero(seen & in_range(view.frame.depth)), np.count_nonzero(seen)], np.float64)
 
 
 def judge_hits(sums: Array) -> list[Finding | Unknown]:
-    """Where nothing is hit, nothing is filtered."""
+    """Report frames without any usable depth: nothing is filtered there."""
     hit, normals = sums
     if hit:
         return []
@@ -183,14 +186,14 @@ def judge_hits(sums: Array) -> list[Finding | Unknown]:
 
 
 def above_one(view: View) -> Array | None:
-    """Pixels, and those whose albedo is above 1."""
+    """Count pixels, and those whose albedo is above 1."""
     if view.albedo is None:
         return None
     return np.array([view.depth.size, np.count_nonzero(over_channels(np.maximum, view.albedo) > 1.01)], np.float64)
 
 
 def judge_albedo(sums: Array) -> list[Finding]:
-    """No surface reflects more light than it gets."""
+    """Report albedo above 1: no surface reflects more light than it gets."""
     if sums[1] <= SOME * sums[0]:
         return []
     cure = "give lamps and sky an albedo of 1 and put their light into emission; divide 8-bit albedo by 255"
@@ -198,13 +201,13 @@ def judge_albedo(sums: Array) -> list[Finding]:
 
 
 def beyond_rough(view: View) -> Array | None:
-    """Pixels, and those whose roughness is above 1."""
+    """Count pixels, and those whose roughness is above 1."""
     roughness = view.frame.roughness
     return None if roughness is None else np.array([roughness.size, np.count_nonzero(roughness > 1.001)], np.float64)
 
 
 def judge_roughness(sums: Array) -> list[Finding]:
-    """No surface is rougher than 1."""
+    """Report roughness above 1."""
     if sums[1] <= SOME * sums[0]:
         return []
     cure = "divide 8-bit roughness by 255; the exponent of a lobe is not a roughness"
@@ -212,13 +215,13 @@ def judge_roughness(sums: Array) -> list[Finding]:
 
 
 def at_one(view: View) -> Array:
-    """Pixels of surfaces; with a channel of exactly 1; with one above."""
+    """Count pixels of surfaces, those with a channel of exactly 1, and those with a channel above 1."""
     color = view.color[view.hit]
     return np.array([len(color), any_channel(color == 1).sum(), any_channel(color > 1).sum()], np.float64)
 
 
 def judge_range(sums: Array) -> list[Finding | Unknown]:
-    """Many values of exactly 1 and none above are no accident."""
+    """Report clipped colour: many values of exactly 1, and none above."""
     pixels, one, above = sums
     if above:
         return []

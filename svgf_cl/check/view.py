@@ -1,4 +1,4 @@
-"""`View`: a frame as the checks look at it, in float64, with what cannot be used taken out."""
+"""`View`: a frame as the checks see it, in float64, without values that cannot be used."""
 
 from __future__ import annotations
 
@@ -16,31 +16,31 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Whole = NDArray[np.int64]
 
-# Rows that suffice. Of a higher frame every second, third... row and column is looked at: those make a frame too.
-# Of 720 rows, 180 no longer tell a camera that moves slowly from one that stands still.
+# Rows that are enough. In a frame with more rows, checks use every second, third... row and column. With 180 of 720
+# rows, a slowly moving camera could not be distinguished from a static one.
 ENOUGH_ROWS = 240
-# Pixels of a picture; in fewer, much lies on edges, and those of one field fall on those of others by chance.
+# A picture with fewer pixels is small: many lie on edges, and edges of different fields coincide by chance.
 FEW = 100 * 100
-# Where the denoiser sees a surface: between these depths, where the normal is at least so long.
+# The denoiser sees a surface where depth is in this range and the normal is longer than this.
 DEPTH_RANGE, SHORTEST_NORMAL = (1e-20, 1e20), 1e-6
-# Depth beyond so many times the median was meant to say that nothing was hit, whatever the normal says.
+# A depth beyond this many times the median means that nothing was hit, even if there is a normal.
 FAR = 1e4
 
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A frame on the host, of which every `step`-th pixel is looked at: (h, w) of them.
+    """A frame on the host; the checks look at every `step`-th row and column, (h, w) pixels.
 
     Parameters
     ----------
     frame : Frame
-        Of numpy arrays, every pixel, as it was given.
+        All pixels as they were given, in numpy arrays.
     step : int
     color : (h, w, 3)
-        All radiance; the sum of `direct`, `indirect` and `emission` where color was left out.
+        All radiance; the sum of `direct`, `indirect` and `emission` if the frame has no color.
     normal : (h, w, 3)
     depth : (h, w)
-        0 where it cannot be used.
+        0 where depth cannot be used.
     motion : (h, w, 2)
         In pixels of the view.
     deeper : (h, w), optional
@@ -52,7 +52,7 @@ class View:
     nearness : (h, w)
         One over depth, which is linear in x and y on a plane; 0 where nothing was hit.
     reflecting : (h, w)
-        Where a surface was hit that does not shine itself.
+        Where the denoiser sees a surface that emits no light.
     """
 
     frame: Frame
@@ -71,18 +71,18 @@ class View:
 
     @property
     def shape(self) -> Shape:
-        """(height, width) of what is looked at."""
+        """(height, width) of the view."""
         height, width = self.depth.shape
         return height, width
 
     @property
     def is_small(self) -> bool:
-        """Whether there are so few pixels that chance tells as much as they do."""
+        """Whether there are too few pixels to exclude coincidence."""
         return self.depth.size < FEW
 
     @classmethod
     def of(cls, frame: Frame) -> View:
-        """Look at a frame; arrays on a device are copied from there."""
+        """Make the view of a frame; arrays on a device are copied to the host."""
         given = {name: on_host(frame.layer(name)) for name in frame.present()}
         step = -(-given["depth"].shape[0] // ENOUGH_ROWS)
         some = {name: value[(step - 1) // 2 :: step, (step - 1) // 2 :: step] for name, value in given.items()}
@@ -110,7 +110,7 @@ class View:
 
 
 def on_host(value: Any) -> NDArray[Any]:
-    """A numpy.ndarray of it; for a pyopencl.array.Array, whatever its strides, all of its buffer is copied."""
+    """Return an array as numpy.ndarray; for a pyopencl.array.Array, with any strides, its whole buffer is copied."""
     if isinstance(value, np.ndarray):
         return value
     memory = np.empty(value.base_data.size, np.uint8)
@@ -120,30 +120,30 @@ def on_host(value: Any) -> NDArray[Any]:
 
 
 def in_range(depth: NDArray[Any]) -> Mask:
-    """Whether the denoiser takes a depth for that of a surface."""
+    """Return whether the denoiser treats a depth as that of a surface."""
     within: Mask = (depth > DEPTH_RANGE[0]) & (depth < DEPTH_RANGE[1])
     return within
 
 
 def is_hit(depth: NDArray[Any], normal: NDArray[Any]) -> Mask:
-    """Whether the denoiser sees a surface, by its depth (h, w) and finite normal (h, w, 3)."""
+    """Return whether the denoiser sees a surface, by its depth (h, w) and finite normal (h, w, 3)."""
     return in_range(depth) & has_normal(normal)
 
 
 def has_normal(normal: NDArray[Any]) -> Mask:
-    """Whether there is a normal (h, w, 3) at all, NaN being none."""
+    """Return whether there is a normal (h, w, 3); NaN is none."""
     long: Mask = over_channels(np.maximum, np.abs(normal)) > SHORTEST_NORMAL
     return long
 
 
 def over_channels(combine: np.ufunc, values: NDArray[Any]) -> NDArray[Any]:
-    """Combine the channels of (h, w, C): (h, w). NumPy's own reduction of so short an axis takes ten times as long."""
+    """Combine the channels of (h, w, C) to (h, w); NumPy's own reduction of such a short axis is ten times slower."""
     combined: NDArray[Any] = reduce(combine, np.moveaxis(values, -1, 0))
     return combined
 
 
 def shifted(values: NDArray[Any], dx: int, dy: int) -> NDArray[Any]:
-    """What lies (dx, dy) pixels further, the border repeated: (h, w, ...) like `values`."""
+    """Return the values at (dx, dy) pixels further, (h, w, ...) like `values`; the border is repeated."""
     height, width = values.shape[:2]
     rows = np.clip(np.arange(height) + dy, 0, height - 1)
     columns = np.clip(np.arange(width) + dx, 0, width - 1)
@@ -151,18 +151,18 @@ def shifted(values: NDArray[Any], dx: int, dy: int) -> NDArray[Any]:
 
 
 def pixel_centers(shape: Shape) -> tuple[Array, Array]:
-    """Columns and rows of every pixel, x and y (h, w), from the middle of the image."""
+    """Return x and y of every pixel, (h, w), from the middle of the image."""
     height, width = shape
     y, x = np.mgrid[:height, :width].astype(np.float64)
     return x - (width - 1) / 2, y - (height - 1) / 2
 
 
 def sample(mask: Mask, count: int) -> Whole:
-    """At most `count` places of a mask, always the same ones, as indices into the flattened mask."""
+    """Return at most `count` places of a mask, always the same ones, as indices into the flattened mask."""
     return np.random.default_rng(0).permutation(np.flatnonzero(mask))[:count]
 
 
 def typical(depth: Array) -> float:
-    """The median of a depth where it is above 0; infinite where it never is."""
+    """Return the median of the depths above 0; infinite if there are none."""
     usable = depth[depth > 0]
     return float(np.median(usable)) if usable.size else np.inf

@@ -1,4 +1,4 @@
-"""The command line ``svgf-cl``: one file a command; all that a user can get wrong ends here, in exit code 2."""
+"""The command line ``svgf-cl``, with one module for each command. The user's errors end here, with exit code 2."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ COMMANDS: dict[str, Command] = {
     "bench": bench.bench,
     "tune": tune.tune,
 }
-# Installed packages may declare more: a function each, under the command's name.
+# Other installed packages may declare more commands: one function for each, under the command's name.
 GROUP = "svgf_cl.commands"
-# As the help lists them; any others come behind.
+# The order of commands in the help; any others come after these.
 ORDER = (
     "devices",
     "demo",
@@ -48,14 +48,14 @@ ORDER = (
     "bench",
     "tune",
 )
-INTERRUPTED = 130  # as a shell has it of a program that Ctrl-C ends; so does SIGTERM here
-# What a command says that takes whatever comes.
+INTERRUPTED = 130  # a shell's exit code for a program that Ctrl-C ended; here also for SIGTERM
+# Settings of a command that accepts any arguments.
 ANYTHING = {"ignore_unknown_options": True, "allow_extra_args": True}
 
 
 @dataclass(frozen=True)
 class Unavailable:
-    """A declared command that cannot be imported, and why."""
+    """A declared command that cannot be imported, and the reason."""
 
     complaint: str
 
@@ -65,23 +65,23 @@ class Unavailable:
 
 
 def commands() -> dict[str, Command | Unavailable]:
-    """Every command by its name: svgf_cl's own, and those of other packages that are installed."""
+    """Return every command by its name: svgf_cl's own, and those of other installed packages."""
     found = {entry.name: loaded(entry) for entry in entry_points(group=GROUP)} | COMMANDS
     return {name: found[name] for name in sorted(found, key=lambda name: ((*ORDER, name).index(name), name))}
 
 
 def loaded(entry: EntryPoint) -> Command | Unavailable:
-    """The function of an entry point; whatever is wrong with it, the other commands work."""
+    """Return the function of an entry point. If it cannot be imported, the other commands still work."""
     try:
         command: Command = entry.load()
-    except Exception as error:  # it runs what others wrote
+    except Exception as error:  # other people's code may raise anything
         return Unavailable(f"{entry.name}: {entry.value} cannot be imported ({one_line(error)})")
     return command
 
 
 def application() -> typer.Typer:
-    """The command line with all that is installed."""
-    # Plain help and errors: they read the same in a terminal, in a log and through grep.
+    """Return the command line with all installed commands."""
+    # Help and errors are plain text: they look the same in a terminal, in a log and after grep.
     app = typer.Typer(
         invoke_without_command=True,
         epilog="Exit codes: 0 success; 1 a check or a run failed; 2 wrong input; 130 interrupted.",
@@ -107,20 +107,23 @@ def common(
         raise typer.Exit
 
 
-# typer has no name of its own for it: every option and argument it cannot make sense of.
+# The base class of typer's errors for wrong options and arguments, for which typer has no name.
 UsageError: type[Any] = typer.BadParameter.__mro__[1]
 
 
 def main(argv: Sequence[str] | None = None) -> NoReturn:
-    """Run the command line on `argv` (by default the process's own arguments) and leave with its exit code."""
+    """Run the command line on `argv` (by default the process's own arguments) and exit with its exit code."""
     arguments = list(sys.argv[1:] if argv is None else argv) or ["--help"]
     leave(application(), arguments, "svgf-cl", "svgf-cl")
 
 
 def leave(app: typer.Typer, arguments: Sequence[str], name: str, usage: str) -> NoReturn:
-    """Run `app` and leave with its exit code; errors are one line, told under `name`. `usage` is how it is called."""
+    """Run `app` and exit with its exit code.
+
+    Errors are printed in one line that begins with `name`. `usage` is the command as the user calls it.
+    """
     for stream in (sys.stdout, sys.stderr):
-        # A file may be called what is no text at all: it is shown as Python would write it.
+        # A file's name may not be valid text: then it is printed with Python's escapes.
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     try:
@@ -136,9 +139,9 @@ def leave(app: typer.Typer, arguments: Sequence[str], name: str, usage: str) -> 
         complaint = " ".join(f"{error.format_message().rstrip('.')}; try '{command} --help'".split())
     except MemoryError as error:
         complaint = f"not enough memory: {error}"
-    except OSError as error:  # a path that no command has looked at: the system says what is wrong with it
+    except OSError as error:  # for a path that no command has checked
         complaint = f"{error.filename or 'output'}: {error.strerror or error}"
-    except (KeyboardInterrupt, typer.Abort):  # which of them, or the code alone, depends on typer's version
+    except (KeyboardInterrupt, typer.Abort):  # typer's version decides which of these, or the exit code
         print(f"{name}: interrupted", file=sys.stderr)
         sys.exit(INTERRUPTED)
     print(f"{name}: {printable(complaint)}", file=sys.stderr)
@@ -147,8 +150,8 @@ def leave(app: typer.Typer, arguments: Sequence[str], name: str, usage: str) -> 
 
 @contextmanager
 def plain_warnings(name: str) -> Iterator[None]:
-    """Inside, what is meant for the user is said once, in one line on stderr; Python would add where it is from."""
-    told: set[str] = set()  # each chunk of a shot may warn of the same
+    """Print each warning for the user once, in one line on stderr, without the source line that Python would add."""
+    told: set[str] = set()  # each chunk of a shot may give the same warning
     with warnings.catch_warnings():
         usual = warnings.showwarning
 
@@ -166,5 +169,5 @@ def plain_warnings(name: str) -> Iterator[None]:
 
 
 def printable(text: str) -> str:
-    """Escape what would not show, or do something else than show: names come from files and folders of anyone."""
+    """Escape characters that are invisible or control the terminal: names of files and folders may contain any."""
     return "".join(char if char.isprintable() or char == "\n" else ascii(char)[1:-1] for char in text)

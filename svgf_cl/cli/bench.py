@@ -1,4 +1,4 @@
-"""``svgf-cl bench``: how fast the filter is here, how near the device's limits, and how far from the oracle."""
+"""``svgf-cl bench``: measures the filter's speed, the device's limits, and the error against the oracle."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from svgf_cl.io.atomic import output_folder
 
 
 def check_ratio(value: float | None) -> float | None:
-    """Refuse a ratio that every time would miss, or none."""
+    """Return the ratio; raise an error unless it is a finite number above 0."""
     if value is not None and not 0 < value < math.inf:  # NaN, too
         raise typer.BadParameter(f"expected a ratio > 0 such as 1.10, got {value:g}")
     return value
@@ -28,7 +28,7 @@ def bench(
     only: Annotated[str, typer.Option(metavar="REGEX", help="Only benchmarks whose name matches.")] = "",
     size: Annotated[
         list[str], typer.Option(metavar="WxH", help="Size to time; may be repeated. By default 320x180 to 3840x2160.")
-    ] = [],  # noqa: B006  # never changed; typer wants the default spelled here
+    ] = [],  # noqa: B006  # never changed; typer needs the default here
     seconds: Annotated[float, typer.Option(metavar="S", min=0.0, help="Approximate time for each denoiser.")] = 1.0,
     ceilings: Annotated[bool, typer.Option(help="Measure the limits of the devices, and show rooflines.")] = True,
     list_: Annotated[
@@ -39,13 +39,13 @@ def bench(
         float | None,
         typer.Option(
             metavar="RATIO",
-            help="With --compare: exit code 1 where a pass or frame takes more than this many times as long as before, "
+            help="With --compare: exit code 1 if a pass or frame takes more than this many times as long as before, "
             "beyond the spread of both runs.",
             callback=check_ratio,
         ),
     ] = None,
     junit: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="With --fail-above: also write what was checked as JUnit XML.")
+        Path | None, typer.Option(metavar="FILE", help="With --fail-above: also write the checks as JUnit XML.")
     ] = None,
     output: Annotated[
         Path | None,
@@ -56,7 +56,7 @@ def bench(
     json: Annotated[
         Path | None,
         typer.Option(
-            metavar="FILE", help="Also write the results as JSON there; '-' prints them on stdout instead of tables."
+            metavar="FILE", help="Also write the results there as JSON; '-' prints them on stdout instead of tables."
         ),
     ] = None,
     filter_: FilterName = DEFAULT.name,
@@ -121,7 +121,7 @@ def bench(
 
 
 def check_gate(old: Path | None, fail_above: float | None, junit: Path | None) -> None:
-    """Raise `SvgfError` where a gate lacks what it needs."""
+    """Raise `SvgfError` if an option lacks another that it needs."""
     if fail_above and not old:
         raise SvgfError("--fail-above: expected --compare OLD.json too, got none")
     if junit and not fail_above:
@@ -129,7 +129,7 @@ def check_gate(old: Path | None, fail_above: float | None, junit: Path | None) -
 
 
 def parse_pattern(text: str) -> re.Pattern[str]:
-    """Read a regular expression; `SvgfError` where it is none."""
+    """Read a regular expression; raise `SvgfError` if it is invalid."""
     try:
         return re.compile(text)
     except re.error as error:

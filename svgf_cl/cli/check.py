@@ -1,4 +1,4 @@
-"""``svgf-cl check``: what is wrong with frames, before they are denoised."""
+"""``svgf-cl check``: finds mistakes in frames before they are denoised."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def check(
     ] = None,
     allow_gaps: AllowGaps = False,
     format_: reading.Format = None,
-    maps: reading.Maps = [],  # noqa: B006  # never changed; typer wants the default spelled here
+    maps: reading.Maps = [],  # noqa: B006  # never changed; typer needs the default here
     view_layer: reading.ViewLayer = None,
     cameras: reading.Cameras = None,
     still_camera: reading.StillCamera = False,
@@ -77,9 +77,9 @@ def check(
 
 
 def draw(path: Path, last: list[Frame]) -> None:
-    """Write the contact sheet of the last of some frames."""
+    """Write the picture of the last frame's fields."""
     try:
         from svgf_cl.check.sheet import sheet
     except ImportError as error:
-        raise SvgfError(f"--output: drawing takes Pillow; pip install pillow ({error})") from error
+        raise SvgfError(f"--output: drawing needs Pillow; pip install pillow ({error})") from error
     write_image(path, sheet(last[0], last[-1]))

@@ -1,4 +1,4 @@
-"""``svgf-cl compare``: filters beside each other on scenes or on a user's frames, or pictures against references."""
+"""``svgf-cl compare``: compares filters on scenes or on a user's frames, or pictures with their references."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
     from svgf_cl.compare.rivals import Rival
 
 SCENE_FILES = (".gltf", ".glb", ".obj")
-PICTURES = "pictures"  # the rival's name where pictures were made before
+PICTURES = "pictures"  # the rival's name for finished pictures
 
 
 @dataclass(frozen=True)
 class Preset:
-    """How much a comparison on scenes takes on: the options' defaults, and those of --quick."""
+    """The extent of a comparison on scenes: the defaults of the options, or those with --quick."""
 
     scenes: tuple[str, ...]
     size: str
@@ -51,16 +51,16 @@ def compare(
         typer.Argument(
             metavar="[SCENE...|FRAMES|A B]",
             help="Scenes to render; or, with --reference, the frames of one shot; or two pictures or folders of them, "
-            "the second being the reference of the first. By default built-in scenes.",
+            "of which the second is the reference of the first. By default built-in scenes.",
         ),
-    ] = [],  # noqa: B006  # never changed; typer wants the default spelled here
+    ] = [],  # noqa: B006  # never changed; typer needs the default here
     filters: Annotated[
         str | None,
         typer.Option(
             metavar="NAME,...",
-            help="What to compare, such as svgf,taps=5x5,eaw,oidn: filters, each followed by its settings; oidn is "
-            "Open Image Denoise frame by frame, oidn+accumulation the same accumulated over time. The first is the one "
-            "that --fail-below tests. By default all that is installed.",
+            help="Filters to compare, each followed by its settings, such as svgf,taps=5x5,eaw,oidn. oidn is Open "
+            "Image Denoise frame by frame, oidn+accumulation the same accumulated over time. --fail-below and "
+            "--fail-above test the first one. By default all that are installed.",
         ),
     ] = None,
     reference: Annotated[
@@ -72,8 +72,8 @@ def compare(
             "-o",
             "--output",
             metavar="DIR",
-            help="Where to write index.html, results.json, results.csv and figures; for scenes and frames "
-            "out/compare by default.",
+            help="Folder for index.html, results.json, results.csv and figures; by default out/compare for scenes "
+            "and frames.",
         ),
     ] = None,
     quick: Annotated[
@@ -101,13 +101,16 @@ def compare(
         ),
     ] = "",
     fail_above: Annotated[
-        str, typer.Option(metavar="MEASURE=X,...", help="Exit code 1 if it has more, such as relmse=0.1,ghost=0.2.")
+        str,
+        typer.Option(
+            metavar="MEASURE=X,...", help="Exit code 1 if the first filter has more, such as relmse=0.1,ghost=0.2."
+        ),
     ] = "",
     junit: Annotated[Path | None, typer.Option(metavar="FILE", help="Also write these checks as JUnit XML.")] = None,
     json: Annotated[
         Path | None,
         typer.Option(
-            metavar="FILE", help="Also write all figures as JSON there; '-' prints them on stdout instead of tables."
+            metavar="FILE", help="Also write all values there as JSON; '-' prints them on stdout instead of tables."
         ),
     ] = None,
 ) -> None:
@@ -160,7 +163,7 @@ def compare(
 
 
 def needs_packages() -> None:
-    """Raise `SvgfError` where a package is missing without which nothing can be compared."""
+    """Raise `SvgfError` if a package that every comparison needs is missing."""
     from svgf_cl.compare.metrics import require_ssim, why_no_flip
 
     require_ssim()
@@ -192,19 +195,19 @@ def is_scene(text: str) -> bool:
 
 
 def refuse_rendering(options: Mapping[str, object]) -> None:
-    """Raise `SvgfError` where an option of rendering was given though nothing is rendered."""
+    """Raise `SvgfError` if an option for rendering is given, but nothing is rendered."""
     for name, value in options.items():
         if value:
             raise SvgfError(f"{name}: expected scenes to render, got finished pictures or frames")
 
 
 def of_pictures(inputs: Sequence[str], filters: str | None) -> Footage:
-    """Two pictures, or two folders of them."""
+    """Return the footage of two pictures, or of two folders of them."""
     from svgf_cl.compare.recorded import open_pictures
 
     if len(inputs) != 2:
         raise SvgfError(
-            f"expected two pictures or folders, the second being the reference of the first, got {len(inputs)}; "
+            f"expected two pictures or folders, of which the second is the reference of the first, got {len(inputs)}; "
             "to filter frames, add --reference"
         )
     if filters is not None:
@@ -213,7 +216,7 @@ def of_pictures(inputs: Sequence[str], filters: str | None) -> Footage:
 
 
 def of_frames(inputs: Sequence[str], reference: Path, *, jitter: bool) -> Footage:
-    """A user's frames with references."""
+    """Return the footage of a user's frames with references."""
     from svgf_cl.compare.recorded import open_frames
 
     if not inputs:
@@ -228,7 +231,7 @@ def of_scenes(
     *,
     jitter: bool,
 ) -> list[Footage]:
-    """Shots of scenes; `given`: size, frames, judged and spp, where they are given."""
+    """Return the footage of scenes; `given` has the options size, frames, judged and spp."""
     from svgf_cl.compare.footage import Choice, opener
 
     size, frames, judged, spp = given
@@ -239,14 +242,14 @@ def of_scenes(
 
 
 def chosen_rivals(text: str | None) -> list[Rival]:
-    """What --filters says, or all that is installed."""
+    """Return the rivals of --filters, or all that are installed."""
     from svgf_cl.compare.rivals import parse_rivals, usual_rivals
 
     return parse_rivals(usual_rivals() if text is None else text, parse_settings)
 
 
 def judge(footage: Footage, rivals: Sequence[Rival], exposure: float, folder: Path | None) -> Scene:
-    """One scene: the kept part of an earlier run, or a new one, which is kept."""
+    """Return one scene's results: those that an earlier run stored, or new ones, which are stored."""
     from svgf_cl.compare.contest import NOISY, compete
     from svgf_cl.compare.record import part_name, read_part, write_part
     from svgf_cl.compare.rivals import Noisy, makers
@@ -271,7 +274,7 @@ def judge(footage: Footage, rivals: Sequence[Rival], exposure: float, folder: Pa
 
 
 def page_of(scenes: Sequence[Scene], exposure: float) -> Page:
-    """The page of all scenes."""
+    """Return the page of all scenes."""
     from svgf_cl.compare.page import Page
     from svgf_cl.compare.record import measured
     from svgf_cl.device.devices import default_device
@@ -289,14 +292,16 @@ def page_of(scenes: Sequence[Scene], exposure: float) -> Page:
 
 
 def report(page: Page, *, by_frame: bool, to_stdout: bool) -> None:
-    """Print tables: of each scene or, of pictures, of each frame."""
+    """Print a table for each scene; the rows are filters, or frames for finished pictures."""
     from svgf_cl.compare.record import results
     from svgf_cl.compare.tables import frame_table, scene_table
 
     for scene in page.scenes:
         broken = [each.rival for each in scene.entries if each.values and not is_measured(each)]
         if broken:
-            typer.echo(f"{scene.name}: hardly measured, as pixels are NaN: {', '.join(broken)}", err=True)
+            typer.echo(
+                f"{scene.name}: most measures are missing, because pixels are NaN: {', '.join(broken)}", err=True
+            )
     if to_stdout:
         print(results(page), end="")
         return
@@ -308,13 +313,13 @@ def report(page: Page, *, by_frame: bool, to_stdout: bool) -> None:
 
 
 def is_measured(entry: Entry) -> bool:
-    """Whether an error was measured; it is NaN where pixels are."""
+    """Whether an error was measured; it is NaN if pixels are NaN."""
     psnr = entry.values.get("psnr")
     return psnr is not None and psnr == psnr
 
 
 def write_files(page: Page, folder: Path | None, json: Path | None) -> None:
-    """Write the page and all figures."""
+    """Write the page, all values, and the figures."""
     from svgf_cl.compare import page as pages
     from svgf_cl.compare.figures import figure, file_name
     from svgf_cl.compare.record import results, table

@@ -1,4 +1,4 @@
-"""What all commands show alike: progress, tables, milliseconds."""
+"""Output that all commands share: progress, tables, and times."""
 
 from __future__ import annotations
 
@@ -17,15 +17,18 @@ from svgf_cl.cli.log import Log
 
 Item = TypeVar("Item")
 
-SLOWEST_STEP = 600.0  # seconds between two steps from which the time left can still be told
+SLOWEST_STEP = 600.0  # most seconds between two steps from which the time left is estimated
 
-WIDE = 160  # columns where the output is no terminal: nothing is gained by breaking words in a file
-NARROW = 72  # columns where a terminal has fewer: it breaks lines itself, where a table would leave out numbers
+WIDE = 160  # columns of a table in a file, where there is no need to break words
+NARROW = 72  # least columns of a table: a narrower terminal breaks lines itself, while a table would lose numbers
 
 
 @contextmanager
 def progress_bar(title: str, total: int) -> Iterator[Callable[[], None]]:
-    """Show progress and the time left, on stderr: a bar on a terminal, else lines; call what this yields per step."""
+    """Show progress and the time left on stderr: a bar in a terminal, else lines.
+
+    It yields a function to call after each step.
+    """
     console = Console(stderr=True)
     if not console.is_terminal:
         log, steps = Log(title, total), count(1)
@@ -38,9 +41,10 @@ def progress_bar(title: str, total: int) -> Iterator[Callable[[], None]]:
 
 @contextmanager
 def share_bar(title: str, total: int) -> Iterator[Callable[[float, str], None]]:
-    """Show progress as `progress_bar` does; call what this yields with how much of `total` is done, and a remark.
+    """Show progress as `progress_bar` does, with remarks.
 
-    What is done at the first call was done before: the time left is judged by what follows.
+    It yields a function to call with how much of `total` is done, and a remark. The amount in the first call was done
+    before: it does not count for the estimate of the time left.
     """
     console = Console(stderr=True)
     if not console.is_terminal:
@@ -60,7 +64,7 @@ def share_bar(title: str, total: int) -> Iterator[Callable[[float, str], None]]:
 
 
 def tracked(items: Iterable[Item], total: int, title: str) -> Iterator[Item]:
-    """Pass `items` on under a progress bar."""
+    """Yield `items`, and show progress."""
     with progress_bar(title, total) as advance:
         for item in items:
             yield item
@@ -68,8 +72,8 @@ def tracked(items: Iterable[Item], total: int, title: str) -> Iterator[Item]:
 
 
 def show(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], words: int = 1) -> None:
-    """Print a table under its title; the first `words` columns are words, the others are numbers."""
-    print(title)  # not the table's own, which would be wrapped to its width
+    """Print a table below its title; the first `words` columns are words, the others are numbers."""
+    print(title)  # a title of the table itself would be wrapped to the table's width
     table = Table()
     for index, column in enumerate(columns):
         table.add_column(column, justify="left" if index < words else "right")
@@ -79,18 +83,18 @@ def show(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], word
 
 
 def screen() -> Console:
-    """What tables are printed on; nowhere, where the standard output is closed."""
+    """Return the console for tables; it prints nothing if standard output is closed."""
     terminal = sys.stdout is not None and sys.stdout.isatty()
     return Console(width=max(NARROW, Console().width) if terminal else WIDE)
 
 
 def kept_of(count: int) -> str:
-    """Say how many files were kept of an earlier run, if any."""
+    """Return a text on how many files of an earlier run were kept; empty if none were."""
     return f", {count} of them kept from an earlier run" if count else ""
 
 
 def show_times(profiles: Sequence[Mapping[str, float]]) -> None:
-    """Print the median time of each pass over frames, each a mapping from pass to milliseconds."""
+    """Print the median time of each pass; `profiles` has the milliseconds by pass for each frame."""
     times = {name: median(profile.get(name, 0.0) for profile in profiles) for name in profiles[-1]}
     rows = [(name, f"{time:.2f}") for name, time in (times | {"total": sum(times.values())}).items()]
     show(f"time on the device, median of {len(profiles)} frames", ("pass", "ms"), rows)

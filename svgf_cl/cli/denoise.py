@@ -1,4 +1,4 @@
-"""``svgf-cl denoise``: EXR frames in, EXR pictures out, one frame at a time."""
+"""``svgf-cl denoise``: reads EXR frames and writes EXR pictures, one frame at a time."""
 
 from __future__ import annotations
 
@@ -26,20 +26,21 @@ from svgf_cl.job import Chunk, Done, Job, Style, png_of, run, steps, target_path
 from svgf_cl.prefilter import EFFORTS, Effort
 from svgf_cl.shot_denoiser import Method
 
-SEPARATE_HELP = "Read this field from files of its own."
+SEPARATE_HELP = "Read this field from separate files."
 Separate = Annotated[Path | None, typer.Option(metavar="FILES", help=SEPARATE_HELP)]
 
-TIMED = 1000  # of the last frames, whose times are shown
+TIMED = 1000  # number of the last frames for which times are shown
 
 CHUNK_HELP = (
     "Denoise the shot in chunks of N frames, each with its own warm-up. "
     f"Default: {CHUNK} with --scheduler; else the shot is one chunk."
 )
 PREFILTER_HELP = (
-    "Denoise albedo; and, where depth is noisy as under depth of field, also depth and the color passes that light "
-    "passes are multiplied by, and fill holes in normals. on: take depth to be noisy. off: none of it."
+    "Denoise albedo first. If depth is noisy, for example because of depth of field, also denoise depth and the color "
+    "passes that light passes are multiplied by, and fill holes in normals. on: assume that depth is noisy. off: do "
+    "none of this."
 )
-SCHEDULER_HELP = "Denoise chunks on the workers of the Dask scheduler there, for example tcp://10.0.0.7:8786."
+SCHEDULER_HELP = "Denoise chunks on the workers of this Dask scheduler, for example tcp://10.0.0.7:8786."
 
 
 def denoise(
@@ -49,7 +50,7 @@ def denoise(
             "-o", "--output", metavar="DIR", help="Folder to write to, made if missing, or a pattern: out/####.exr."
         ),
     ],
-    frames: Frames = [],  # noqa: B006  # never changed; typer wants the default spelled here
+    frames: Frames = [],  # noqa: B006  # never changed; typer needs the default here
     filter_: FilterName = DEFAULT.name,
     set_: SettingTexts = [],  # noqa: B006
     span: Annotated[str | None, typer.Option("--frames", metavar="FIRST-LAST", help="Only these frames.")] = None,
@@ -74,7 +75,7 @@ def denoise(
         bool,
         typer.Option(
             "--passes/--no-passes",
-            help="Denoise light passes one by one, which still add up to the picture, or only the picture.",
+            help="Denoise each light pass, so that they still add up to the picture, or only the picture.",
         ),
     ] = True,
     prefilter: Annotated[
@@ -94,7 +95,7 @@ def denoise(
     png: Annotated[bool, typer.Option("--png", help="Also write every picture tone-mapped as PNG.")] = False,
     exposure: Exposure = 0.0,
     allow_gaps: AllowGaps = False,
-    check: Annotated[bool, typer.Option(help="Check the first frames and warn of what is wrong with them.")] = True,
+    check: Annotated[bool, typer.Option(help="Check the first frames and warn of mistakes in them.")] = True,
     format_: reading.Format = None,
     maps: reading.Maps = [],  # noqa: B006
     view_layer: reading.ViewLayer = None,
@@ -168,7 +169,7 @@ def denoise(
 
 
 def parse_effort(text: str) -> Effort:
-    """Read which guides are denoised."""
+    """Read the value of --prefilter."""
     for effort in EFFORTS:
         if text == effort:
             return effort
@@ -176,7 +177,7 @@ def parse_effort(text: str) -> Effort:
 
 
 def parse_look_ahead(text: str | None) -> int | None:
-    """Read a number of frames, or ``all`` as 0."""
+    """Read the value of --look-ahead: a number of frames, or ``all``, which becomes 0."""
     if text is None or text == "all":
         return None if text is None else 0
     if not re.fullmatch(r"[1-9]\d{,5}", text, re.ASCII):
@@ -196,7 +197,7 @@ def frames_done(
     if len(chunks) == 1 and not scheduler and job.look_ahead is None:
         yield from run(job, chunks[0], remarks.look, advance)
         return
-    # Other frames may be filtered before the first ones.
+    # The first frames may be filtered later than others.
     remarks.look_at_first(Shot(job.paths, job.how, job.separate), places)
     if scheduler:
         for done in denoise_on_cluster(scheduler, job, chunks, look_at_surfaces):
@@ -208,7 +209,7 @@ def frames_done(
 
 
 def chosen(sources: list[Path], span: str | None) -> range:
-    """The places of the frames that are asked for; `SvgfError` where there are none."""
+    """Return the indices of the frames of --frames; raise `SvgfError` if there are none."""
     if span is None:
         return range(len(sources))
     first, last = parse_range(span)

@@ -1,4 +1,4 @@
-"""``svgf-cl devices``: what OpenCL offers here, and what of it really works."""
+"""``svgf-cl devices``: lists the OpenCL devices, and tests whether they work."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def devices() -> None:
     """
     reports = list_devices(refresh=True)
     _show(reports)
-    choose(reports)  # where there is no default, its error says why
+    choose(reports)  # if there is no default, this raises an error that says why
 
 
 def _show(reports: Sequence[DeviceReport]) -> None:
@@ -34,13 +34,13 @@ def _show(reports: Sequence[DeviceReport]) -> None:
     table.columns[-1].overflow = "fold"
     for report in reports:
         mark = f"{report.selector}{' *' if report.is_default else ''}"
-        # As Text, because names and reasons may hold what rich takes for markup.
+        # As Text, because names and reasons may contain text that rich would read as markup.
         table.add_row(mark, "yes" if report.works else "no", Text(_description(report)))
     screen().print(table)
 
 
 def _description(report: DeviceReport) -> str:
-    # "OpenCL 3.0 <what the vendor likes to add>": the driver's version says the rest in fewer words.
+    # Only "OpenCL 3.0" of "OpenCL 3.0 <vendor's text>": the driver's version is shorter than the rest.
     version = " ".join(report.version.split()[:2])
     driver = f"driver {report.driver}" if report.handle else ""
     implementation = ", ".join(part for part in (report.platform, version, driver) if part)
@@ -52,4 +52,4 @@ def _tuning(report: DeviceReport) -> str:
     if not report.works or report.handle is None:
         return ""
     tuning = stored_tuning(report.handle)
-    return f"tuned: {tuning}" if tuning else "untuned; 'svgf-cl tune' looks for what is fastest"
+    return f"tuned: {tuning}" if tuning else "untuned; 'svgf-cl tune' finds the fastest settings"

@@ -1,4 +1,4 @@
-"""``svgf-cl export``: a filter as kernels and a plan, for a renderer that runs it without Python."""
+"""``svgf-cl export``: writes a filter as kernels and a plan, for a renderer that runs it without Python."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ def export(
         str,
         typer.Option(
             metavar="NAME,...",
-            help="What frames have beside color, normal, depth and motion: "
-            f"{', '.join(OPTIONAL)}. direct and indirect, always together, take the place of color.",
+            help="Fields of frames in addition to color, normal, depth and motion: "
+            f"{', '.join(OPTIONAL)}. direct and indirect must come together, and replace color.",
         ),
     ] = "",
     motion: Annotated[
@@ -43,22 +43,23 @@ def export(
         typer.Option(min=2, max=3, metavar="2|3", help="Components of motion; the third is the change of depth."),
     ] = 2,
     filter_: FilterName = DEFAULT.name,
-    set_: SettingTexts = [],  # noqa: B006  # never changed; typer wants the default spelled here
+    set_: SettingTexts = [],  # noqa: B006  # never changed; typer needs the default here
     kind: Annotated[
         str | None,
         typer.Option(
             "--for",
             metavar="gpu|cpu",
-            help="Cut the work as suits most GPUs, or most CPUs; no device is needed then. Default: as is fastest on "
-            "the device here, if svgf-cl tune was run, else as suits most of its kind.",
+            help="Use the tuning for most GPUs or for most CPUs; then no device is needed. By default, the tuning that "
+            "svgf-cl tune stored for the device here, else that for most devices of its kind.",
         ),
     ] = None,
 ) -> None:
     """Write a filter as OpenCL kernels and a plan of how to run them, for a renderer without Python.
 
-    The folder has kernels to be compiled as they are, and plan.json: memory to take, kernels to launch in order with
-    all their arguments, and what to do at a cut. docs/export.md describes it, examples/c_host runs it from C. A plan is
-    for frames of one size with one set of fields, and runs on any device, whatever it was cut for.
+    The folder has kernels that can be compiled as they are, and plan.json. The plan lists the memory to allocate, the
+    kernels to launch in order with all their arguments, and what to do at a cut. docs/export.md describes it, and
+    examples/c_host runs it from C. A plan is for frames of one size with one set of fields. It runs on any device,
+    whatever its tuning.
 
     \b
     Examples:
@@ -81,7 +82,7 @@ def export(
 
 
 def parse_fields(text: str, motion: int) -> Inputs:
-    """Read ``albedo,id`` as what frames supply; `SvgfError` for what is no field that they may lack."""
+    """Read a text such as ``albedo,id`` as the fields of frames; raise `SvgfError` for a name not in `OPTIONAL`."""
     names = [name.strip() for name in text.split(",")] if text.strip() else []
     for name in names:
         if name not in OPTIONAL:
@@ -96,17 +97,17 @@ def parse_fields(text: str, motion: int) -> Inputs:
 
 
 def parse_layout(shape: Shape, tuning: Tuning, settings: Filter) -> Layout:
-    """The layout of an image; `SvgfError` for one that is too large to be worked on as a whole, as plans do."""
+    """Return the layout of an image; raise `SvgfError` if it is too large for a plan, which has no tiles."""
     try:
         return layout_of(shape, tuning, settings)
     except SvgfError as error:
         raise SvgfError(
-            f"--size: expected frames whose buffers indices of 32 bits reach (about 11000x11000), got {extent(shape)}"
+            f"--size: expected at most about 11000x11000 pixels, because indices have 32 bits, got {extent(shape)}"
         ) from error
 
 
 def parse_kind(text: str | None) -> Tuning:
-    """What suits most devices of a kind; for None what suits the device here."""
+    """Return the tuning for most devices of a kind, or for None that of the device here."""
     if text is None:
         return best_tuning(default_device())
     if text not in TUNINGS:

@@ -1,4 +1,4 @@
-"""``svgf-cl formats``: the renderers whose frames are read, and what each pass is read from."""
+"""``svgf-cl formats``: lists the supported renderers, and the passes from which each field is read."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def formats() -> None:
 
 
 def sources(reader: Reader) -> list[tuple[str, str]]:
-    """Each field with the passes that it is read from, the best first, and the light passes."""
+    """Return each field with the passes from which it is read, the best first, and the light passes."""
     fields = [
         (field, ", ".join(name or "R G B" for candidate in candidates for name in candidate.names))
         for field, candidates in reader.passes.items()

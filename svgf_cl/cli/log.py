@@ -1,4 +1,4 @@
-"""Progress where it goes to a file or a farm: a line now and then."""
+"""Shows progress in a file or on a render farm: as a line from time to time."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from datetime import timedelta
 from time import monotonic
 
 SECONDS = 10.0  # between two lines
-OPENJD = "OPENJD_SESSION_WORKING_DIR"  # a variable that processes have which run under Open Job Description
+OPENJD = "OPENJD_SESSION_WORKING_DIR"  # a variable that is set under Open Job Description
 
 
 class Log:
-    """Progress as lines on stderr: at most one in `SECONDS`, none of what takes less.
+    """Shows progress as lines on stderr: at most one in `SECONDS`, and none for a shorter task.
 
     Parameters
     ----------
     title : str
-        What is done.
+        Name of the task.
     total : int
-        How much there is to do.
+        Number of its steps.
     resumed : bool
-        Whether what is done at the first report was done before: the time left is judged by what follows.
+        Whether the steps of the first report were done before; they do not count for the estimate of the time left.
     """
 
     def __init__(self, title: str, total: int, *, resumed: bool = False) -> None:
@@ -30,7 +30,7 @@ class Log:
         self._start = None if resumed else 0.0
 
     def report(self, done: float, remark: str = "") -> None:
-        """So much is done; write a line where it is time for one."""
+        """Note how many steps are done, and write a line if it is time for one."""
         now = monotonic()
         if self._start is None:
             self._start = done
@@ -44,7 +44,7 @@ class Log:
 
 
 def lines(percent: float, status: str) -> list[str]:
-    """What a farm reads of a log: Open Job Description its own lines, others such as Deadline ``Progress: 12%``."""
+    """Return lines that farms understand: Open Job Description's, or ``Progress: 12%`` for Deadline and others."""
     if OPENJD in os.environ:
         return [f"openjd_progress: {percent:.1f}", f"openjd_status: {status}"]
     return [f"Progress: {int(percent)}% {status}"]

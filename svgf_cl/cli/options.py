@@ -1,4 +1,4 @@
-"""Texts from the command line turned into values; each error says what was expected and what came."""
+"""Options that several commands share, and functions that turn their texts into values."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from svgf_cl.io.atomic import output_file
 from svgf_cl.io.display import MAX_STOPS
 from svgf_cl.settings import Domain, Switch, Value, defaults, domains
 
-# A slip of the hand beyond it: of so many pixels squared, one plane of float4 takes 16 GiB.
+# A larger size is a typing error: with this many pixels a side, one plane of float4 takes 16 GiB.
 MAX_SIDE = 32768
 MAX_FRAMES = 1_000_000  # eleven hours at 24 a second
 
-STDOUT = Path("-")  # as --json has it
+STDOUT = Path("-")  # a value of --json
 
 
 def check_exposure(stops: float) -> float:
-    """Refuse an exposure that leaves nothing but black or white."""
+    """Return the exposure; raise an error if pictures would be all black or white."""
     if not -MAX_STOPS <= stops <= MAX_STOPS:  # NaN, too
         raise typer.BadParameter(f"expected stops in -{MAX_STOPS}..{MAX_STOPS}, got {stops:g}")
     return stops
@@ -44,7 +44,11 @@ AllowGaps = Annotated[
 Output = Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Folder to write to; made if missing.")]
 Exposure = Annotated[
     float,
-    typer.Option(metavar="STOPS", help="Brighten what is shown or measured as shown.", callback=check_exposure),
+    typer.Option(
+        metavar="STOPS",
+        help="Brighten pictures that are shown, and display-referred measures.",
+        callback=check_exposure,
+    ),
 ]
 Earlier = Annotated[
     Path | None,
@@ -65,7 +69,7 @@ def parse_size(text: str) -> tuple[int, int]:
 
 
 def parse_measured_size(text: str) -> tuple[int, int]:
-    """Read the size of pictures that are to be measured, which SSIM needs to be of a few pixels; as `parse_size`."""
+    """Read the size of pictures to measure as `parse_size` does; raise `SvgfError` if it is too small for SSIM."""
     shape = parse_size(text)
     if min(shape) < SSIM_WINDOW:
         raise SvgfError(f"--size: expected at least {SSIM_WINDOW}x{SSIM_WINDOW} pixels, which SSIM needs, got {text}")
@@ -73,7 +77,7 @@ def parse_measured_size(text: str) -> tuple[int, int]:
 
 
 def check_files(*files: Path | None) -> None:
-    """Raise `FileError` where one of the files that are to be written cannot be; standard output can."""
+    """Raise `FileError` if one of these output files cannot be written; `STDOUT` always can."""
     for file in files:
         if file and file != STDOUT:
             output_file(file)
@@ -85,7 +89,7 @@ def parse_settings(filter_: str, texts: Iterable[str], option: str = "--set") ->
     Raises
     ------
     SettingsError
-        For a wrong name or value, given by `option`.
+        For a wrong name or value; the message names `option`.
     """
     if filter_ not in FILTERS:
         raise SettingsError(f"--filter: expected {' or '.join(FILTERS)}, got {shown(filter_)}")
@@ -107,7 +111,7 @@ def parse_settings(filter_: str, texts: Iterable[str], option: str = "--set") ->
 
 
 def hint(name: str, known: Iterable[str]) -> str:
-    """What may have been meant by a name that is not among a filter's settings; empty where nobody knows."""
+    """Return a hint on a name that is no setting of the filter; empty if there is none."""
     near = difflib.get_close_matches(name, known, 1, 0.75)
     if near:
         return f"; did you mean {near[0]}=VALUE?"
@@ -116,12 +120,12 @@ def hint(name: str, known: Iterable[str]) -> str:
 
 
 def describe(domain: Domain) -> str:
-    """What a setting may be, as one writes it on the command line."""
+    """Return the possible values of a setting, as on the command line."""
     return "on or off" if isinstance(domain, Switch) else str(domain)
 
 
 def settings_help() -> str:
-    """Describe every setting with its range and default, for the help text: by the filters that have it like that."""
+    """Return the help text on all settings with ranges and defaults, grouped by the filters that have them."""
     owners: dict[str, list[str]] = {}
     for filter_, kind in FILTERS.items():
         for name in domains(kind):
@@ -134,12 +138,12 @@ def settings_help() -> str:
 
 
 def spelled(filters: Sequence[str]) -> str:
-    """Name some of the filters, or all."""
+    """Return the names of filters as text, or "all filters"."""
     return "all filters" if len(filters) == len(FILTERS) else ", ".join(filters)
 
 
 def described(kind: type[Filter], name: str) -> str:
-    """A setting, what it may be, and its default, as one writes them on the command line."""
+    """Return a setting with its possible values and its default, as on the command line."""
     default = defaults(kind)[name]
     text = {True: "on", False: "off"}[default] if isinstance(default, bool) else default
     return f"{name}: {describe(domains(kind)[name])} [{text}]"

@@ -1,4 +1,4 @@
-"""Options that say how frames of other renderers are to be read, and the shot that comes of them."""
+"""The options that say how to read frames of other renderers."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Maps = Annotated[
     typer.Option(
         "--map",
         metavar="FIELD=PASS",
-        help="Read a field from a pass of another name: --map depth=Z,normal=N. May be repeated.",
+        help="Read a field from a pass with another name: --map depth=Z,normal=N. May be repeated.",
     ),
 ]
 ViewLayer = Annotated[
@@ -61,7 +61,7 @@ def read_as(
     motion_scale: float,
     motion_flip: str,
 ) -> ReadAs:
-    """Make a `ReadAs` of the options; `SvgfError` where one of them is wrong."""
+    """Return the options as a `ReadAs`; raise `SvgfError` if one of them is wrong."""
     if motion_flip not in ("", "x", "y", "xy"):
         raise SvgfError(f"--motion-flip: expected x, y or xy, got {shown(motion_flip)}")
     if not 0 < motion_scale < 1e9:

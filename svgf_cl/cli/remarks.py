@@ -1,4 +1,4 @@
-"""Remarks on frames before they are denoised: the fields that are read, and mistakes in the first frames."""
+"""Remarks on frames before they are denoised: the fields that were found, and mistakes in the first frames."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from svgf_cl.io.look_alikes import advice, grouped
 from svgf_cl.io.readers.own import CHANNEL_NAMES, OPTIONAL, OWN, needed
 from svgf_cl.io.shot import Shot, ShotFrame, fields_of
 
-FIRST = 8  # frames that are checked; they tell nearly all that more would
-# What it costs not to have a field.
+FIRST = 8  # frames that are checked; more would find little else
+# The consequences of a missing field.
 COSTS = {
     "albedo": "textures are smoothed like light",
     "id": "objects are distinguished only by depth and normal",
     "emission": "lamps and sky are smoothed too",
     OPTIONAL: "history is lost where the camera moves along its axis",
 }
-PARTS = ("direct", "indirect")  # of the light: `Reading.lights` has them
+PARTS = ("direct", "indirect")  # parts of the light, which `Reading.lights` has
 UNUSED = (*CARRIED, *PARTS, "motion_to_next")
 
 
 def described(shot: Shot, first: ShotFrame) -> str:
-    """Say in one line what the frames are, which fields are read from which channels, and which are missing."""
+    """Return a line that says how the frames are read, from which channels each field, and which are missing."""
     reading = shot.reading
     names = {field: found[1] for field, found in reading.sources.items() if field not in UNUSED}
     light = [light.channels for light in reading.lights if light.filtered]
@@ -46,7 +46,7 @@ def described(shot: Shot, first: ShotFrame) -> str:
     if missing:
         parts.append(f"missing: {', '.join(f'{field} ({COSTS[field]})' for field in missing)}")
     unread = [channel for channel in first.image.planes if not any(channel in found for found in names.values())]
-    if reading.reader is OWN:  # of other renderers it is known what else their passes are
+    if reading.reader is OWN:  # other renderers' further passes are known
         hint = advice(unread, {field: needed(field) for field in CHANNEL_NAMES if field not in (*names, *PARTS)})
         parts += [f"ignored: {hint}"] if hint else []
     return "; ".join(parts)
@@ -56,7 +56,7 @@ BLURRED = "each frame is denoised alone; with motion blur, renderers write no mo
 
 
 class Remarks:
-    """Looks at frames as they come: says what the first one is read from, and warns of what is wrong in the first few.
+    """Prints how the first frame is read, and warns of mistakes in the first few frames.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class Remarks:
         self._inspection = Inspection()
 
     def look(self, shot: Shot, index: int, source: ShotFrame) -> None:
-        """Look at the next frame; `FileError` where nothing would come of it."""
+        """Look at the next frame; raise `FileError` if it cannot be denoised."""
         look_at_surfaces(shot, index, source)
         if self._is_first:
             print(described(shot, source))
@@ -89,10 +89,10 @@ class Remarks:
         self._left -= 1
         if not self._left:
             self._warn()
-            self._inspection, self._last = Inspection(), None  # what they held is free
+            self._inspection, self._last = Inspection(), None  # frees their memory
 
     def look_at_first(self, shot: Shot, places: range) -> None:
-        """Look at the first of the frames of a shot before any of it is denoised."""
+        """Look at the first frames of a shot before any frame is denoised."""
         for index in places[: max(1, self._left)]:
             self.look(shot, index, shot.read(index))
 
@@ -113,15 +113,15 @@ class Remarks:
 
 
 def look_at_surfaces(shot: Shot, index: int, source: ShotFrame) -> None:
-    """Raise `FileError` where nothing would come of a frame."""
+    """Raise `FileError` if a frame cannot be denoised."""
     require_surfaces(source.path, source.frame)
 
 
 def require_surfaces(path: Path, frame: Frame) -> None:
-    """Raise `FileError` where all depth is negative: nothing would be filtered."""
+    """Raise `FileError` if all depth is negative: nothing would be filtered."""
     seen = has_normal(frame.normal)
     behind, hit = -frame.depth[seen & (frame.depth < 0)], frame.depth[seen & in_range(frame.depth)]
-    # A great number may stand for a miss.
+    # A great number may mean a miss.
     if behind.size and not (hit < FAR * np.median(behind)).any():
         raise FileError(
             f"{path}: expected depth above 0 on surfaces, got negative depth everywhere; "

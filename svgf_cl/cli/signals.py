@@ -1,4 +1,4 @@
-"""What other programs send to end this one."""
+"""Handles SIGTERM, with which other programs end this one."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from contextlib import contextmanager
 
 @contextmanager
 def terminated_like_interrupted() -> Iterator[None]:
-    """Inside, SIGTERM, by which farms end a task, does what Ctrl-C does.
+    """Treat SIGTERM, with which farms end a task, like Ctrl-C in a ``with`` block.
 
-    Signals arrive in the main thread alone; in another one this does nothing.
+    Only the main thread receives signals; in another thread this does nothing.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

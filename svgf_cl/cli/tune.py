@@ -1,4 +1,4 @@
-"""``svgf-cl tune``: the fastest vector width, exponential, work-group, layout of rows and copies for this device."""
+"""``svgf-cl tune``: finds the fastest vector width, exponential, work-group, row alignment and copies for a device."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from svgf_cl.device.tuning import default_tuning, forget_tuning, store_path, sto
 from svgf_cl.frame import Shape
 from svgf_cl.io.atomic import output_file, write_text
 
-UNFINISHED = "the search has not come to its end"
+UNFINISHED = "the search is not finished"
 REMEDY = "make the machine idle or choose a smaller --size, and run it again"
 
 
@@ -91,13 +91,13 @@ def tune(
 
 
 def as_json(tuner: Tuner, found: str, size: str) -> dict[str, Any]:
-    """What a search has tried so far, for a file."""
+    """Return the trials of a search so far, for a file."""
     trials = [trial.as_json() for trial in tuner.trials]
     return {"size": size, "verdict": found, "doubts": tuner.doubts, "trials": trials}
 
 
 def trial_row(trial: Trial, shape: Shape) -> tuple[str, ...]:
-    """Spell one row of the table; a dash for what was not timed."""
+    """Return one row of the table; a dash means that it was not timed."""
     tuning = trial.tuning
     group = "{}x{}".format(*tuning.work_group)
     cells = str(tuning.vector_width), tuning.exponential, str(tuning.row_alignment), group
@@ -107,7 +107,7 @@ def trial_row(trial: Trial, shape: Shape) -> tuple[str, ...]:
 
 
 def verdict(final: Trial) -> str:
-    """Say what came of the final between a candidate and the default."""
+    """Return the result of the final between a candidate and the default as text."""
     if not final.ratios:
         return "nothing is faster than the default"
     wins = sum(ratio < 1 for ratio in final.ratios)

@@ -1,4 +1,4 @@
-"""How a command that checks something ends: with a line for each check that failed, and exit code 1 if any did."""
+"""Ends a command that checks something: prints a line for each failed check, and exits with code 1 if there is one."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from svgf_cl.gate import Check, write_junit
 
 
 def leave_with(checks: Sequence[Check], command: str, junit: Path | None) -> None:
-    """Write the JUnit file, if any, and leave with exit code 1 where a check failed, a line for each on stderr."""
+    """Write the JUnit file, if any, print failed checks on stderr, and exit with code 1 if there are any, else 0."""
     if junit:
         write_junit(junit, command, checks)
     failed = [check for check in checks if check.complaint]

@@ -1,4 +1,4 @@
-"""``svgf-cl view``: plays noisy, denoised and reference pictures beside each other, in the browser."""
+"""``svgf-cl view``: plays noisy, denoised and reference pictures side by side in the browser."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ def view(
         list[str],
         typer.Argument(
             metavar="[FRAMES|SCENE]",
-            help="The EXR files of one shot, as svgf-cl denoise takes them; or a scene to render. By default a room "
-            "that needs no files.",
+            help="The EXR files of one shot, as for svgf-cl denoise; or a scene to render. By default a room that "
+            "needs no files.",
         ),
-    ] = [],  # noqa: B006  # never changed; typer wants the default spelled here
+    ] = [],  # noqa: B006  # never changed; typer needs the default here
     reference: Annotated[
         Path | None,
         typer.Option(metavar="REF", help="References of the frames: a folder of pictures, or one picture."),
@@ -56,17 +56,17 @@ def view(
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page, or only say where it is.")] = (
         True
     ),
-    size: Annotated[str, typer.Option(metavar="WxH", help=f"Of rendered frames [{SIZE}].")] = "",
+    size: Annotated[str, typer.Option(metavar="WxH", help=f"Size of rendered frames [{SIZE}].")] = "",
     frames: Annotated[
         int | None,
-        typer.Option(metavar="N", min=1, max=MAX_FRAMES, help="Frames to render [as many as show the scene]."),
+        typer.Option(metavar="N", min=1, max=MAX_FRAMES, help="Number of frames to render [the scene's own]."),
     ] = None,
     spp: Annotated[
         int | None,
         typer.Option(
             metavar="N",
             min=2,
-            help="Also render references of the scene with N samples per pixel; they are kept for the next run.",
+            help="Also render references of the scene with N samples per pixel; they are stored for the next run.",
         ),
     ] = None,
     jitter: Annotated[
@@ -81,9 +81,9 @@ def view(
     motion_scale: reading.MotionScale = 1.0,
     motion_flip: reading.MotionFlip = "",
 ) -> None:
-    """Play noisy, denoised and reference pictures beside each other in the browser, to see flicker.
+    """Play noisy, denoised and reference pictures side by side in the browser, to see flicker.
 
-    Filter and settings are changed while it plays. Frames of files are denoised as svgf-cl denoise does. Scenes are
+    You can change filter and settings while it plays. Frames of files are denoised as svgf-cl denoise does. Scenes are
     rendered at 1 sample per pixel while they are first played, and stay in memory. Only this machine can reach the
     page. Ctrl-C ends it.
 
@@ -107,7 +107,7 @@ def view(
     else:
         refuse_files({"--reference": reference, "--allow-gaps": allow_gaps, "options of reading": how != ReadAs()})
     shape = parse_measured_size(size or SIZE)
-    with Server(port) as server:  # a used port is told before anything is rendered
+    with Server(port) as server:  # a port in use is reported before anything is rendered
         if is_files:
             clip: Clip = of_files(inputs, reference, how, allow_gaps=allow_gaps)
         else:
@@ -120,14 +120,14 @@ def view(
 
 
 def refuse_files(options: Mapping[str, object]) -> None:
-    """Raise `SvgfError` where an option of files was given though there are none."""
+    """Raise `SvgfError` if an option for files is given, but there are no files."""
     for name, value in options.items():
         if value:
             raise SvgfError(f"{name}: expected frames in files, got a scene")
 
 
 def of_files(inputs: Sequence[str], reference: Path | None, how: ReadAs, *, allow_gaps: bool) -> Clip:
-    """The clip of a user's frames."""
+    """Return the clip of a user's frames."""
     from svgf_cl.compare.recorded import find_references
     from svgf_cl.view.files import FilesClip
 
@@ -140,7 +140,7 @@ def of_files(inputs: Sequence[str], reference: Path | None, how: ReadAs, *, allo
 def of_scene(
     inputs: Sequence[str], shape: tuple[int, int], frames: int | None, spp: int | None, *, jitter: bool
 ) -> Clip:
-    """The clip of a scene; of the room where none is named."""
+    """Return the clip of a scene, or of the room if no scene is named."""
     from svgf_cl.view.scenes import open_footage, room, scene
 
     if not inputs:
@@ -155,7 +155,7 @@ def of_scene(
 
 
 def refuse_of_room(spp: int | None, *, jitter: bool) -> None:
-    """Raise `SvgfError` where an option of scenes is given for the room."""
+    """Raise `SvgfError` if an option of scenes is given for the room."""
     if spp is not None:
         raise SvgfError("--spp: expected a scene, got none; the references of the room are exact")
     if jitter:

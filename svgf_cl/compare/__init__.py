@@ -1,1 +1,1 @@
-"""How far pictures are from their references."""
+"""Measures how far pictures are from their references."""

@@ -1,4 +1,4 @@
-"""One scene's frames, made into pictures by all rivals by turns, and judged."""
+"""Lets all rivals denoise the frames of one scene, in turns, and judges their pictures."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ NOISY, REFERENCE = "noisy", "reference"
 
 @dataclass
 class Gallery:
-    """What is kept of one rival's pictures.
+    """The parts of one rival's pictures that the page shows.
 
     Parameters
     ----------
     piece : Piece
     pieces, rows : list of (h, w, 3) and (W, 3) 8-bit
-        Of all judged frames.
+        One of each for every judged frame.
     shown : (H, W, 3) 8-bit, optional
         The frame that is shown whole.
     """
@@ -44,7 +44,7 @@ class Gallery:
     shown: Bytes | None = None
 
     def see(self, picture: Bytes, *, whole: bool) -> None:
-        """Keep what is needed of the next picture."""
+        """Keep the parts of the next picture that are shown."""
         self.pieces.append(self.piece.of(picture).copy())
         self.rows.append(picture[self.piece.row].copy())
         if whole:
@@ -53,16 +53,16 @@ class Gallery:
 
 @dataclass
 class Contestant:
-    """A rival at work.
+    """A rival in a contest, with its judge, its pictures and its times.
 
     Parameters
     ----------
     maker : Maker
     judge : Judge
     gallery : Gallery, optional
-        From the first judged frame on.
+        Set at the first judged frame.
     times : list of float, ms
-        Of judged frames.
+        Times of the judged frames.
     """
 
     maker: Maker
@@ -78,22 +78,23 @@ class Contestant:
 
 
 def compete(footage: Footage, makers: Mapping[str, Maker], exposure: float, advance: Callable[[], None]) -> Scene:
-    """Let all rivals, new ones, denoise a footage frame by frame.
+    """Let all rivals denoise a footage frame by frame, and judge them.
 
     Parameters
     ----------
     footage : Footage
     makers : mapping of str to Maker
-        The first is the one under test: it chooses the piece that clips show, where it is worst.
+        Rivals that have not denoised any frame yet. The first one that is not the noisy input is under test: clips show
+        the piece where it is worst.
     exposure : float, stops
-        Of all that is shown, and of what is measured as shown.
+        Exposure of all pictures that are shown, and of display-referred measures.
     advance : callable
         Called ``footage.steps + len(footage.numbers)`` times.
 
     Returns
     -------
     Scene
-        Its entries are in the order of `makers`, with the reference behind them.
+        Its entries are in the order of `makers`; the reference is the last.
     """
     judged = list(footage.judged)
     if not judged:
@@ -139,14 +140,14 @@ def compete(footage: Footage, makers: Mapping[str, Maker], exposure: float, adva
 
 
 def piece_to_show(pictures: Mapping[str, Bytes], wanted: Bytes) -> Piece:
-    """Where the first rival after the noisy frames is worst."""
+    """Return the piece where the first rival after the noisy input is worst."""
     tested = next((name for name in pictures if name != NOISY), NOISY)
     rows, columns = worst_piece(pictures[tested], wanted, imagery.PIECES)
     return Piece(rows, columns)
 
 
 def entry(name: str, contestant: Contestant, wanted: Bytes) -> Entry:
-    """What a page shows of one rival."""
+    """Return one rival's entry for the page."""
     gallery, judge = contestant.gallery, contestant.judge
     if gallery is None or gallery.shown is None:
         raise ValueError(f"{name}: expected a picture of the frame that is shown")
@@ -163,19 +164,19 @@ def entry(name: str, contestant: Contestant, wanted: Bytes) -> Entry:
 
 
 def reference_entry(gallery: Gallery, wanted: Bytes) -> Entry:
-    """What a page shows of the reference."""
+    """Return the reference's entry for the page."""
     return Entry(REFERENCE, {}, {}, None, imagery.encoded(wanted), None, **moving(gallery))
 
 
 def moving(gallery: Gallery) -> dict[str, bytes | None]:
-    """Clip and profile, where there are frames to move."""
+    """Return the clip and the profile; None for both if there is only one frame."""
     if len(gallery.rows) < 2:
         return {"clip": None, "profile": None}
     return {"clip": imagery.clip(gallery.pieces), "profile": imagery.profile(gallery.rows)}
 
 
 def note_of(footage: Footage, truths: Mapping[int, Pair], exposure: float) -> str:
-    """The footage's own remark, and how far the halves of the truth are apart, where there are two."""
+    """Return the footage's own note, and how much the halves of the truth differ, if there are two."""
     apart = [psnr(display(first, exposure), display(second, exposure)) for first, second in truths.values()]
     noise = f"halves of the truth differ by {np.mean(apart):.1f} dB" if np.isfinite(apart).all() else ""
     return "; ".join(text for text in (footage.note, noise) if text)

@@ -1,4 +1,4 @@
-"""Pictures for talks and papers: a scene by all rivals in a row, and below each a magnified piece."""
+"""Makes figures for talks and papers: a scene by all rivals in a row, and a magnified piece below each."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from svgf_cl.compare.page import Scene
 from svgf_cl.io.display import Bytes
 from svgf_cl.io.panels import GAP, LABEL_HEIGHT, magnified, side_by_side
 
-WIDTH = 480  # pixels at most, of a panel
-LONGEST = 40  # characters of a name, of up to four bytes each
+WIDTH = 480  # pixels, of a panel, at most
+LONGEST = 40  # characters in a file's name, up to four bytes each
 
 
 def figure(scene: Scene) -> Bytes:
-    """The noisy frame, all filters and the reference in a row, and below each a magnified piece."""
+    """Return the noisy frame, all filters and the reference in a row, with a magnified piece below each."""
     entries = sorted(scene.entries, key=lambda each: (each.rival != scene.noisy, each.rival == scene.reference))
     pictures = {each.rival: decoded(each.picture) for each in entries}
     panels = {name: reduced(picture) for name, picture in pictures.items()}
@@ -32,18 +32,18 @@ def figure(scene: Scene) -> Bytes:
 
 
 def file_name(number: int, name: str) -> str:
-    """What to call the figure of a scene: its number, and of its name what any system takes."""
+    """Return the file name of a scene's figure: its number, and its name in characters that any system accepts."""
     safe = "".join(char if char.isalnum() or char in "-_" else "_" for char in name)
     return f"{number:02d}.{safe[:LONGEST]}.png"
 
 
 def decoded(file: bytes) -> Bytes:
-    """The picture in a file (H, W, 3)."""
+    """Return the picture in a file's bytes, (H, W, 3)."""
     return np.asarray(Image.open(io.BytesIO(file)).convert("RGB"))
 
 
 def reduced(picture: Bytes) -> Bytes:
-    """A picture no wider than a panel."""
+    """Return the picture, scaled down if it is wider than a panel."""
     height, width, _ = picture.shape
     if width <= WIDTH:
         return picture

@@ -1,4 +1,4 @@
-"""What filters are compared on: frames of a shot, and what some of them converge to."""
+"""`Footage`: the frames of a shot on which filters are compared, and the references of some of them."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ NEEDED, HINT = "comparing on scenes needs the tracer", install_extra("tracer")
 
 
 class Footage(Protocol):
-    """A shot, and the truth about some of its frames.
+    """A shot, and the truth (the converged picture) of some of its frames.
 
     Attributes
     ----------
     name, note : str
-        Of the scene, and a remark on how the frames were made; the note may be empty.
+        The scene's name, and a remark on how the frames were made; the note may be empty.
     shape : (int, int)
         (height, width) in pixels.
     jitter : bool
         Whether rays go through another point of the pixel in every frame, and the truth is the mean over the pixel.
     numbers : sequence of int
-        Of all frames, in order.
+        The numbers of all frames, in order.
     judged : sequence of int
-        Of those whose truth is known.
+        The numbers of the frames whose truth is known.
     steps : int
         How often `truths` will call `advance`.
     identity : str
-        Names all that frames and truths depend on.
+        A text that changes with everything that frames and truths depend on.
     """
 
     @property
@@ -54,28 +54,28 @@ class Footage(Protocol):
     def identity(self) -> str: ...  # noqa: D102
 
     def frames(self) -> Iterator[Frame]:
-        """The noisy frames."""
+        """Yield the noisy frames."""
 
     def truths(self, advance: Callable[[], None]) -> Mapping[int, Pair]:
-        """Two independent estimates of each judged frame's truth, by number; twice the same where there is but one."""
+        """Return two independent estimates of each judged frame's truth, by number; the same twice if there is one."""
 
 
 @dataclass(frozen=True)
 class Choice:
-    """How scenes are to be rendered for a comparison.
+    """How to render scenes for a comparison.
 
     Parameters
     ----------
     shape : (int, int)
         (height, width) in pixels.
     frames : int, optional
-        By default as many as show the scene.
+        Number of frames; by default the scene decides.
     judged : int, optional
-        How many of the last frames are to have a truth; by default all but the first, whose history is short.
+        How many of the last frames get a truth; by default all except the first ones, whose history is short.
     spp : int, >= 2
         Samples per pixel of a truth.
     jitter : bool
-        Whether rays are to go through another point of the pixel in every frame.
+        Whether rays go through another point of the pixel in every frame.
     """
 
     shape: Shape
@@ -89,12 +89,12 @@ Opener = Callable[[str, Choice], Footage]
 
 
 def opener() -> Opener:
-    """The function of an installed package that renders scenes.
+    """Return the function of an installed package that renders scenes.
 
     Raises
     ------
     SvgfError
-        Where no such package is installed, or it cannot be imported.
+        If no such package is installed, or it cannot be imported.
     """
     for entry in entry_points(group=GROUP):
         try:

@@ -1,10 +1,10 @@
 "use strict";
-// Wheel, mouse and fingers move the pictures in the panes of a stage. Places are in widths and heights of a pane.
+// Wheel, mouse and fingers move the pictures in the panes of a stage. Positions are in widths and heights of a pane.
 
 const within = (value, low, high) => Math.min(Math.max(value, low), high);
 
 function gestures(stage, { zoomBy, panBy, point, isWhole }) {
-  // Where in a pane an event is.
+  // The position of an event in a pane.
   function place(event, pane) {
     const box = pane.getBoundingClientRect();
     return { x: (event.clientX - box.left) / box.width, y: (event.clientY - box.top) / box.height };
@@ -12,12 +12,12 @@ function gestures(stage, { zoomBy, panBy, point, isWhole }) {
 
   function turn(event) {
     const pane = event.target.closest(".pane");
-    if (!pane || (event.deltaY > 0 && isWhole())) return; // nothing smaller: the page scrolls
+    if (!pane || (event.deltaY > 0 && isWhole())) return; // it cannot get smaller, so the page scrolls
     event.preventDefault();
     zoomBy(Math.exp(-within(event.deltaY, -100, 100) / 250), place(event, pane));
   }
 
-  const held = new Map(); // the pointers that are down: where each is in the pane in which the first came down
+  const held = new Map(); // positions of the pressed pointers, in the pane in which the first was pressed
 
   function hold(event) {
     const [first] = held.values();
@@ -33,7 +33,7 @@ function gestures(stage, { zoomBy, panBy, point, isWhole }) {
       const before = grip();
       held.set(event.pointerId, { pane, ...place(event, pane) });
       const after = grip();
-      if (held.size > 1) zoomBy(after.spread / before.spread, before); // first, or there may be no room to pan
+      if (held.size > 1) zoomBy(after.spread / before.spread, before); // before panning, which may need the room
       panBy(after.x - before.x, after.y - before.y);
     }
     point(pane && place(event, pane));
@@ -43,7 +43,7 @@ function gestures(stage, { zoomBy, panBy, point, isWhole }) {
     held.delete(event.pointerId);
   }
 
-  // The middle of all pointers that are down, and how far they are from it.
+  // The middle of all pressed pointers, and their distance from it.
   function grip() {
     const all = [...held.values()];
     const x = all.reduce((sum, each) => sum + each.x, 0) / all.length;

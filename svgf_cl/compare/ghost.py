@@ -1,20 +1,20 @@
-"""Ghosts: how much of what was seen before is left where something has come into view.
+"""Ghosts: how much of the old picture remains where a surface has come into view.
 
-A pixel's surface is uncovered where nothing of the frame before shows it at the place that motion points to. What was
-seen there, o, is a ghost if it shines through:
+A surface that a pixel shows is uncovered if the previous frame does not show it at the place that motion points to. The
+old picture there, o, is a ghost if it still shows:
 
 ``ghost = sum((p - t)(o - t)) / sum((o - t)^2)``
 
-p being the picture and t the truth, display-referred, over all pixels uncovered in one of the last `GHOST_FRAMES`
-frames, this one included. 0: nothing is left; 1: the old picture is still there. Where the camera or the thing moves, o
-moves along with the surface that was uncovered, as a filter's history does. Pixels beside an edge do not count: they
-may be mixtures of what is on both sides. The truth's own noise is kept out by its halves, as in
-`svgf_cl.compare.halves`: no two factors of a product are of one half.
+Here p is the picture and t the truth, both display-referred. The sums are over all pixels that were uncovered in one of
+the last `GHOST_FRAMES` frames, including this one. 0 means that nothing remains, 1 that the old picture is still there.
+If the camera or the object moves, o moves along with the uncovered surface, as a filter's history does. Pixels next to
+an edge do not count, because they may mix both sides of it. The truth's own noise does not count, because the two
+factors of each product come from different halves of the truth (`svgf_cl.compare.halves`).
 
-Frames count in which o differs from t by `FAINT` or more, root mean square: below it a slope would be that of noise.
+A frame counts only if o differs from t by `FAINT` or more, root mean square; below that, noise would decide the slope.
 
-A blur across the edge of what has just moved on looks the same and counts. So does geometry thinner than a pixel, where
-rays are jittered: read the figure beside that of the noisy frames, which have no past.
+Blur across the edge of an object that has just moved looks the same, and counts. So does geometry thinner than a pixel,
+if rays are jittered. So compare the value with that of the noisy frames, which have no history.
 """
 
 from __future__ import annotations
@@ -31,19 +31,19 @@ from svgf_cl.frame import Shape
 from svgf_cl.io.display import Linear
 
 GHOST_FRAMES = 4
-FAINT = 0.1  # of what a screen shows
+FAINT = 0.1  # display-referred, of 0..1
 
 
 @dataclass(frozen=True, eq=False)
 class Uncovered:
-    """Which pixels of a frame were uncovered lately, and what was seen there before.
+    """Which pixels of a frame were uncovered recently, and the old picture there.
 
     Parameters
     ----------
     age : (H, W), frames
-        Since they were; 0 if in this frame, inf if never.
+        Frames since the pixel was uncovered; 0 if in this frame, inf if never.
     old : two of (H, W, 3)
-        Halves of the truth before, display-referred.
+        Halves of the truth of the old picture, display-referred.
     """
 
     age: Plane
@@ -51,12 +51,12 @@ class Uncovered:
 
     @classmethod
     def none(cls, shape: Shape) -> Uncovered:
-        """Of a first frame."""
+        """Return the state of a first frame: no pixel was uncovered."""
         black = np.zeros((*shape, 3))
         return cls(np.full(shape, np.inf), (black, black))
 
     def followed(self, past: Reprojection, before: Pair) -> Uncovered:
-        """The same of the next frame; `before` are the halves of this one."""
+        """Return the state of the next frame; `before` are the halves of this frame's truth."""
         new, there = past.uncovered, past.nearest
         age = np.where(new, 0.0, np.where(past.seen.any(axis=0), self.age[there] + 1, np.inf))
         first, second = (
@@ -66,14 +66,15 @@ class Uncovered:
 
     @property
     def lately(self) -> Mask:
-        """Where a ghost may be, (H, W)."""
+        """The pixels that may have a ghost, (H, W)."""
         mask: Mask = self.age < GHOST_FRAMES
         return mask
 
     def left(self, shown: Linear, halves: Pair, inside: Mask) -> Share:
-        """How much of it is left in a display-referred picture, (H, W, 3), where it is `inside` of surfaces, (H, W).
+        """Return how much of the old picture remains in a display-referred picture, (H, W, 3).
 
-        Nothing of nothing where what was seen before hardly differs from the truth.
+        Only pixels `inside` surfaces, (H, W), count. The share is empty if the old picture hardly differs from the
+        truth.
         """
         where = self.lately & inside
         share, values = Share(), 2 * 3 * np.count_nonzero(where)

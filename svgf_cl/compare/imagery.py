@@ -1,4 +1,4 @@
-"""What a page shows of a rival's pictures: one of them, its error map, a piece of all, and a row of all."""
+"""Makes the images of the page: a picture, its error map, an animated piece, and a row of pixels over time."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from PIL import Image
 from svgf_cl.compare.metrics import flip_map, why_no_flip
 from svgf_cl.io.display import Bytes
 
-QUALITY = 92  # of a WebP: nothing is seen of it beside noise
-MAP_QUALITY = 75  # of an error map, which is looked at for where errors lie
-LARGEST = 16383  # pixels along a side of a WebP
+QUALITY = 92  # of a WebP file: its errors are invisible next to noise
+MAP_QUALITY = 75  # of an error map, which only shows where errors are
+LARGEST = 16383  # pixels along a side of a WebP file
 FPS = 8.0
-ROW_HEIGHT = 6  # pixels of a frame in a profile
-PIECES = 4  # of a picture, along each side
+ROW_HEIGHT = 6  # pixels that each frame takes in a profile
+PIECES = 4  # pieces along each side of a picture
 
 
 @dataclass(frozen=True)
 class Piece:
-    """A part of a picture: rows and columns, and the row whose change over time is shown.
+    """A part of a picture.
 
     Parameters
     ----------
@@ -40,17 +40,17 @@ class Piece:
 
     @property
     def row(self) -> int:
-        """Through its middle."""
+        """The row through the middle, whose change over time is shown."""
         row: int = (self.rows.start + self.rows.stop) // 2
         return row
 
     def of(self, picture: Bytes) -> Bytes:
-        """The part of a picture (H, W, 3)."""
+        """Return this part of a picture (H, W, 3)."""
         return picture[self.rows, self.columns]
 
 
 def encoded(picture: Bytes, quality: int = QUALITY) -> bytes:
-    """A picture (H, W, 3) as a WebP file; as PNG where it is too large for one."""
+    """Return a picture (H, W, 3) as a WebP file, or as PNG if it is too large for WebP."""
     file = io.BytesIO()
     kind = "WEBP" if max(picture.shape) <= LARGEST else "PNG"
     Image.fromarray(picture).save(file, format=kind, quality=quality)
@@ -58,12 +58,12 @@ def encoded(picture: Bytes, quality: int = QUALITY) -> bytes:
 
 
 def error_map(shown: Bytes, wanted: Bytes) -> bytes | None:
-    """FLIP's map of the difference between two shown pictures (H, W, 3) as a WebP file; None where FLIP is missing."""
+    """Return FLIP's map of the difference of two pictures (H, W, 3) as a WebP file; None if FLIP is missing."""
     return None if why_no_flip() else encoded(flip_map(shown / 255.0, wanted / 255.0), MAP_QUALITY)
 
 
 def clip(pieces: Sequence[Bytes]) -> bytes:
-    """Pieces of consecutive pictures as an animated WebP file; the page magnifies it."""
+    """Return pieces of consecutive pictures as an animated WebP file; the page magnifies it."""
     first, *rest = map(Image.fromarray, pieces)
     file = io.BytesIO()
     first.save(
@@ -73,5 +73,5 @@ def clip(pieces: Sequence[Bytes]) -> bytes:
 
 
 def profile(rows: Sequence[Bytes]) -> bytes:
-    """The same row (W, 3) of consecutive pictures, one below the other, as a WebP file."""
+    """Return the same row (W, 3) of consecutive pictures, one below the other, as a WebP file."""
     return encoded(np.repeat(np.stack(rows), ROW_HEIGHT, axis=0))

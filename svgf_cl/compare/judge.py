@@ -1,7 +1,7 @@
-"""How good pictures of a sequence are: every measure of `svgf_cl.compare`, frame by frame, then of all frames.
+"""Judges the pictures of a sequence by every measure of `svgf_cl.compare`, for each frame and for all frames.
 
-Each measure that has a way not to count the truth's own noise goes it. SSIM, FLIP, relMSE and the share that is
-unsettled have none.
+The truth's own noise does not count, except in SSIM, FLIP, relMSE and the unsettled share, which have no way to exclude
+it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from svgf_cl.io.display import Linear
 
 @dataclass(frozen=True)
 class Findings:
-    """How good a filter's pictures of a sequence are. A figure is NaN where the frames show nothing it is about.
+    """The results for a filter's pictures of a sequence. A value is NaN if the frames show nothing that it measures.
 
     Parameters
     ----------
@@ -34,20 +34,21 @@ class Findings:
     ssim, flip, relmse, relmse_trimmed : float
         Means over frames.
     bias : float
-        Light too much, as a share of that of the truth; negative where light is lost.
+        Excess of light, as a share of the truth's light; negative if light is lost.
     temporal, temporal_on_surfaces : float
         Temporal error, root mean square, without the truth's noise.
     flicker, warped : float
-        How much more than the truth pictures change, where surfaces rest and where they move; negative if less.
+        How much more the pictures change than the truth, where surfaces rest and where they move; negative if less.
     edges, shadows, moving_shadows, detail : float
-        Shares kept: of the sharpness of edges, of the contrast of light on a surface, of the same where the light has
-        just changed, of the finest contrast of textures that move.
+        The share that is kept of the sharpness of edges, of the contrast of light on a surface, of that contrast where
+        the light has just changed, and of the finest contrast of moving textures.
     ghost : float
-        Share of what was seen before that is left where something has come into view.
+        The share of the old picture that remains where a surface has come into view.
     unsettled : float
-        Share of thin geometry that is plainly wrong.
+        The share of thin geometry that is clearly wrong.
     lags : tuple of int or None
-        Frames until each switching of a lamp is followed; None where it is not, before the next or the end.
+        Frames until the picture has followed each switching of a lamp; None if it has not by the next switching or the
+        end.
     """
 
     psnr: float
@@ -70,12 +71,12 @@ class Findings:
 
 
 class Judge:
-    """Judges the pictures that one filter makes of the frames of a sequence, one after another.
+    """Judges the pictures that one filter makes of a sequence, one after another.
 
     Parameters
     ----------
     switches : sequence of int
-        Among the judged frames, from 0, those before which a lamp was switched: `switches_in` of the truths.
+        Indices, from 0, of the judged frames right before which a lamp was switched; see `switches_in`.
     """
 
     def __init__(self, switches: Sequence[int] = ()) -> None:
@@ -96,7 +97,7 @@ class Judge:
             self._changes[len(self._scores)] = Change.of(self._last, sight)
             self._follow_lamps(sight, self._last.view)
             self._follow_ghosts(sight, self._last.view)
-        else:  # behind a gap nothing can be followed
+        else:  # after a gap in the frames nothing can be followed
             self._unswitched = self._uncovered = None
         resting = view.resting if self._last else np.ones(view.frame.shape, np.bool_)
         self._flicker.see(sight.shown, view.shown_halves, resting)
@@ -120,7 +121,7 @@ class Judge:
 
     @property
     def findings(self) -> Findings:
-        """What was found so far."""
+        """The results so far."""
         scores, changes, curves = self._scores, self._changes.values(), self.curves
         return Findings(
             psnr=float(np.mean(curves["psnr"])),
@@ -144,7 +145,7 @@ class Judge:
 
     @property
     def curves(self) -> dict[str, list[float]]:
-        """Figures of each frame so far, by the key of their measure; the temporal error behind a gap is NaN."""
+        """Values of each frame so far, by the key of their measure; the temporal error after a gap is NaN."""
         return {
             "psnr": [decibels(score.error.value) for score in self._scores],
             "ssim": [score.ssim for score in self._scores],
@@ -159,10 +160,10 @@ class Judge:
 
 
 def switches_in(truths: Sequence[Pair]) -> list[int]:
-    """Which frames, from 0, are those before which a lamp was switched, by the halves of each frame's truth."""
+    """Return the indices of the frames right before which a lamp was switched, by the halves of each frame's truth."""
     return steps([float(np.mean(0.5 * (first + second) @ np.array(LUMINANCE))) for first, second in truths])
 
 
 def total(shares: Iterable[Share]) -> Share:
-    """All shares together."""
+    """Return the sum of all shares."""
     return sum(shares, Share())

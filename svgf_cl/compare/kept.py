@@ -1,24 +1,24 @@
-"""How much of the truth's contrast a picture keeps: the slope of the one on the other, where the truth has contrast.
+"""Measures how much of the truth's contrast a picture keeps, where the truth has contrast.
 
-All measures are shares: 1 where all is kept, 0 where the picture is flat; more than 1 where contrast is exaggerated.
+All measures are shares: 1 if all contrast is kept, 0 if the picture is flat, more than 1 if contrast is exaggerated.
 
 =========  =====================  =====================================================================================
 measure    computed on            definition
 =========  =====================  =====================================================================================
-sharpness  display-referred       ``sum(g . g1) / sum(g2 . g1)``, g, g1 and g2 being Sobel's gradients of the luminance
-                                  of picture and halves: how sharp edges are
+sharpness  display-referred       ``sum(g . g1) / sum(g2 . g1)``, where g, g1 and g2 are Sobel's gradients of the
+                                  luminance of picture and halves: how sharp edges are
 contrast   luminance of light     ``sum(cov(a / m, h1 / m1)) / sum(cov(h2 / m2, h1 / m1))`` over windows of 5x5 pixels,
-           without albedo,        m, m1 and m2 being each one's mean in the window: lit minus shadow, relative to the
-           linear                 light there, over that of the truth; wherever light varies over a surface
-detail     display-referred       ``sum(l l1) / sum(l2 l1)``, l, l1 and l2 being Laplacians of the luminance of
+           without albedo,        where m, m1 and m2 are the means in the window: lit minus shadow, relative to the
+           linear                 light there, divided by the same of the truth, where light varies over a surface
+detail     display-referred       ``sum(l l1) / sum(l2 l1)``, where l, l1 and l2 are Laplacians of the luminance of
                                   picture and halves: how much of the finest contrast is left
 =========  =====================  =====================================================================================
 
-Sums are over the `SHARE` of the pixels or windows where h1 has most; those of detail over all that are asked for. The
-halves h1 and h2 of the truth are independent, as in `svgf_cl.compare.halves`. h1 chooses; its noise is in both sums
-alike, and that of h2 and of the picture has no direction in common with it. So noise of neither truth nor picture
-counts as contrast: h1 is what statistics calls an instrumental variable. Then the halves change places, and all is
-added up.
+Sums are over the `SHARE` of the pixels or windows with the most contrast in h1; for detail, over all given pixels. The
+halves h1 and h2 of the truth are independent, as in `svgf_cl.compare.halves`. h1 selects the pixels. Its noise is the
+same in both sums, and not correlated with the noise of h2 and of the picture. So the noise of truth and picture does
+not count as contrast: statistics calls h1 an instrumental variable. Then the halves are swapped, and both results are
+added.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from svgf_cl.frame import LUMINANCE
 from svgf_cl.io.display import Linear
 
 SHARE = 0.05
-RADIUS = 2  # of a window, in pixels
+RADIUS = 2  # pixels, of a window
 FAINT = 0.1  # standard deviation of light in a window over its mean
 
 Plane = NDArray[np.float64]
@@ -43,28 +43,29 @@ Product = Callable[[NDArray[np.floating], NDArray[np.floating]], Plane]
 
 
 def sharpness(shown: Linear, halves: Pair, where: Mask) -> Share:
-    """How sharp the strongest edges among the pixels `where` (H, W) are, of display-referred pictures (H, W, 3)."""
+    """Return how sharp the strongest edges among the pixels `where` (H, W) are, in display-referred pictures."""
     return slope(gradients_along, shown, halves, where)
 
 
 def contrast(light: Plane, halves: tuple[Plane, Plane], where: Mask) -> Share:
-    """How much contrast light (H, W) keeps in the windows around the pixels `where` (H, W).
+    """Return how much contrast light (H, W) keeps in the windows around the pixels `where` (H, W).
 
-    `where` has to be such that each window shows one surface: other edges than those of light are not what is meant.
-    Nothing of nothing where the truth has no contrast beyond `FAINT`, and a slope would be that of noise.
+    Each of these windows must show one surface, so that only the light has edges in it. The share is empty if the
+    truth's contrast is not above `FAINT`, where noise would decide the slope.
     """
     return slope(relative_covariance, light, halves, where, FAINT**2)
 
 
 def detail(shown: Linear, halves: Pair, where: Mask) -> Share:
-    """How much of the finest contrast display-referred pictures (H, W, 3) keep, among the pixels `where` (H, W)."""
+    """Return how much of the finest contrast display-referred pictures (H, W, 3) keep, in the pixels `where` (H, W)."""
     return sum((ratio(laplacians, shown, pair, where) for pair in (halves, halves[::-1])), Share())
 
 
 def slope(product: Product, picture: Linear, halves: Pair, where: Mask, least: float = 0.0) -> Share:
-    """Slope of picture on truth, by a product (H, W) of two images, where its square is largest in the truth.
+    """Return the slope of picture on truth, by a `product` (H, W) of two images.
 
-    If the truth's own product is not above `least` there, on average, it is that of nothing.
+    It is computed where the product of the truth with itself is largest. The share is empty if the truth's product
+    there is not above `least` on average.
     """
     total = Share()
     for chooser, other in (halves, halves[::-1]):
@@ -76,14 +77,14 @@ def slope(product: Product, picture: Linear, halves: Pair, where: Mask, least: f
 
 
 def ratio(product: Product, picture: Linear, halves: Pair, where: Mask) -> Share:
-    """Product of picture and first half over that of second and first half, over the pixels `where`."""
+    """Return the product of picture and first half, and the product of both halves, summed over the pixels `where`."""
     chooser, other = halves
     part, whole = (float(product(image, chooser)[where].sum()) for image in (picture, other))
     return Share(part, whole)
 
 
 def largest(strength: Plane, where: Mask) -> Mask:
-    """Among the pixels `where`, the `SHARE` where strength is largest, and above 0."""
+    """Return the `SHARE` of the pixels `where` that has the largest strength, and only those above 0."""
     if not where.any():
         return where
     chosen: Mask = where & (strength > 0) & (strength >= np.quantile(strength[where], 1 - SHARE))
@@ -91,13 +92,13 @@ def largest(strength: Plane, where: Mask) -> Mask:
 
 
 def gradients_along(shown: Linear, chooser: Linear) -> Plane:
-    """Inner product of two pictures' gradients, (H, W)."""
+    """Return the inner product of two pictures' gradients, (H, W)."""
     product: Plane = (gradient(shown) * gradient(chooser)).sum(axis=-1)
     return product
 
 
 def gradient(shown: Linear) -> NDArray[np.float64]:
-    """Sobel's gradient of luminance, (H, W, 2); 0 at the picture's border."""
+    """Return Sobel's gradient of luminance, (H, W, 2); 0 at the picture's border."""
     luminance = np.asarray(shown, np.float64) @ np.array(LUMINANCE)
     smooth_down = luminance[:-2] + 2 * luminance[1:-1] + luminance[2:]
     smooth_along = luminance[:, :-2] + 2 * luminance[:, 1:-1] + luminance[:, 2:]
@@ -106,12 +107,12 @@ def gradient(shown: Linear) -> NDArray[np.float64]:
 
 
 def laplacians(shown: Linear, chooser: Linear) -> Plane:
-    """Product of two pictures' Laplacians, (H, W)."""
+    """Return the product of two pictures' Laplacians, (H, W)."""
     return laplacian(shown) * laplacian(chooser)
 
 
 def laplacian(shown: Linear) -> Plane:
-    """Sum of the four neighbours' luminance less four times the pixel's own, (H, W); 0 at the picture's border."""
+    """Return the four neighbours' luminance less four times the pixel's own, (H, W); 0 at the picture's border."""
     luminance = np.asarray(shown, np.float64) @ np.array(LUMINANCE)
     along = luminance[1:-1, :-2] + luminance[1:-1, 2:]
     down = luminance[:-2, 1:-1] + luminance[2:, 1:-1]
@@ -119,14 +120,14 @@ def laplacian(shown: Linear) -> Plane:
 
 
 def relative_covariance(light: NDArray[np.floating], other: NDArray[np.floating]) -> Plane:
-    """Covariance of two planes within each window, each relative to its mean there, (H, W); 0 where a mean is."""
+    """Return the covariance of two planes in each window, relative to both means there, (H, W); 0 if a mean is 0."""
     means = window_mean(light) * window_mean(other)
-    with np.errstate(invalid="ignore"):  # pixels of a picture may be infinite, which leaves no number
+    with np.errstate(invalid="ignore"):  # a picture may have infinite pixels, which give NaN
         return np.divide(window_mean(light * other) - means, means, out=np.zeros_like(means), where=means > 0)
 
 
 def window_mean(plane: NDArray[np.floating]) -> Plane:
-    """Mean over the window around each pixel, (H, W); 0 where the window reaches beyond the picture."""
+    """Return the mean over the window around each pixel, (H, W); 0 where the window reaches beyond the picture."""
     mean = np.zeros(plane.shape)
     if min(plane.shape) > 2 * RADIUS:
         ones = np.ones(2 * RADIUS + 1)

@@ -1,15 +1,16 @@
 """Lag: how many frames a picture takes to follow a change of light.
 
-Between frame n-1 and n, a lamp is switched: the truth goes from b to a. How far a picture p of a later frame has
-followed is the slope of ``p - b`` on ``a - b``:
+A lamp is switched between frames n-1 and n: the truth goes from b to a. The response says how far a picture p of a
+later frame has followed. It is the slope of ``p - b`` on ``a - b``:
 
 ``response = sum(w (p - b)(a - b)) / sum(w (a - b)^2)``, ``w = 1 / (a + b + mean(a + b))^2``
 
-The weight lets bright pixels count little more than others; the mean in it keeps the darkest from counting for all.
+Because of the weight, bright pixels count little more than others; because of the mean in it, the darkest pixels do not
+dominate.
 
-0: nothing is followed yet; 1: all. The truth's own noise is kept out by its halves, as in `svgf_cl.compare.halves`: no
-two factors of a product are of one half. `lag` is the number of frames from n on until the response is `FOLLOWED`;
-0 where frame n itself has it.
+0 means that the picture has not followed at all, 1 that it has followed completely. The truth's own noise does not
+count, because the two factors of each product come from different halves of the truth (`svgf_cl.compare.halves`). `lag`
+is the number of frames from n on until the response is `FOLLOWED`; 0 if frame n itself reaches it.
 """
 
 from __future__ import annotations
@@ -22,17 +23,17 @@ from svgf_cl.compare.share import Share
 from svgf_cl.io.display import Linear
 
 FOLLOWED = 0.9
-STEP = 1.5  # factor by which a picture becomes lighter or darker at once, if a lamp was switched
+STEP = 1.5  # a lamp was switched if a picture becomes lighter or darker by this factor in one frame
 
 
 def steps(levels: Sequence[float]) -> list[int]:
-    """Where a lamp was switched: indices of `levels`, mean light of each frame, that differ by `STEP` from before."""
+    """Return where a lamp was switched: indices of `levels`, the mean light of each frame, after a `STEP`."""
     pairs = enumerate(pairwise(levels), 1)
     return [number for number, (before, after) in pairs if max(before, after) > STEP * min(before, after)]
 
 
 def response(picture: Linear, before: Pair, after: Pair, where: Mask) -> Share:
-    """How far a linear picture (H, W, 3) has gone from `before` to `after`, halves of the truth, as above."""
+    """Return how far a linear picture (H, W, 3) has gone from `before` to `after`, which are halves of the truth."""
     if not where.any():
         return Share()
     part = whole = 0.0
@@ -46,5 +47,8 @@ def response(picture: Linear, before: Pair, after: Pair, where: Mask) -> Share:
 
 
 def lag(responses: Sequence[float]) -> int | None:
-    """Frames until a response, one for each frame from the change on, is `FOLLOWED`; None where it never is."""
+    """Return the number of frames until the response is `FOLLOWED`; None if it never is.
+
+    `responses` has one for each frame from the change on.
+    """
     return next((frames for frames, reached in enumerate(responses) if reached >= FOLLOWED), None)

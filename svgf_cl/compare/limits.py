@@ -1,4 +1,4 @@
-"""Limits that a comparison is held to: below or above them it fails."""
+"""Limits of a comparison: it fails if a value is below or above them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from svgf_cl.errors import SvgfError
 from svgf_cl.gate import Check
 
 KNOWN = {each.key: each for each in MEASURES}
-OF_EACH_FRAME = ("psnr", "ssim", "flip", "relmse")  # the temporal error is one of two frames
+OF_EACH_FRAME = ("psnr", "ssim", "flip", "relmse")  # not the temporal error, which needs two frames
 
 
 @dataclass(frozen=True)
@@ -24,16 +24,22 @@ class Limits:
 
     @classmethod
     def parse(cls, below: str, above: str) -> Limits:
-        """Read ``psnr=30,ssim=0.9`` of ``--fail-below`` and ``--fail-above``; `SvgfError` for what is none."""
+        """Read the texts of ``--fail-below`` and ``--fail-above``, as ``psnr=30,ssim=0.9``.
+
+        Raises
+        ------
+        SvgfError
+            If a text has another form, or names an unknown measure.
+        """
         return cls(parsed("--fail-below", below), parsed("--fail-above", above))
 
     def __bool__(self) -> bool:
         return bool(self.least or self.most)
 
     def checks(self, scene: Scene, rival: str, *, each_frame: bool = False) -> Iterator[Check]:
-        """One check for each limit, of what a rival made of a scene; what was not measured fails.
+        """Yield one check for each limit, of a rival's values in a scene; a value that was not measured fails.
 
-        With `each_frame`, one for each frame in its place where the measure is one of `OF_EACH_FRAME`.
+        With `each_frame`, a measure of `OF_EACH_FRAME` has one check for each frame instead.
         """
         (entry,) = [each for each in scene.entries if each.rival == rival]
         for side, limits in (("below", self.least), ("above", self.most)):
@@ -52,9 +58,9 @@ def is_beyond(value: float, side: str, limit: float) -> bool:
 
 
 def complaint(measure: Measure, value: float | None, side: str, limit: float) -> str:
-    """What is wrong with a value; empty where nothing is."""
+    """Return what is wrong with a value; empty if nothing is."""
     if value is None or math.isnan(value):
-        return f"{measure.title} was not measured: pixels are NaN, or the frames show nothing it is about"
+        return f"{measure.title} was not measured: pixels are NaN, or the frames show nothing that it measures"
     if not is_beyond(value, side, limit):
         return ""
     unit = f" {measure.unit}" if measure.unit else ""

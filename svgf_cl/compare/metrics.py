@@ -1,22 +1,22 @@
-"""How far a picture is from its reference: as shown (PSNR, SSIM, FLIP), in light (relMSE), and over time.
+"""Metrics of a picture against its reference: display-referred (PSNR, SSIM, FLIP), linear (relMSE), and over time.
 
 ========  ================  ==========================================================================================
 metric    computed on       definition
 ========  ================  ==========================================================================================
-PSNR      display-referred  ``-10 log10(mean((a - b)**2))`` over all pixels and channels, in dB; inf where equal
+PSNR      display-referred  ``-10 log10(mean((a - b)**2))`` over all pixels and channels, in dB; inf if equal
 SSIM      display-referred  mean structural similarity of the channels, Gaussian window of sigma 1.5, as in Wang et
-                            al. 2004 (scikit-image's ``structural_similarity``); 1 where equal
+                            al. 2004 (scikit-image's ``structural_similarity``); 1 if equal
 FLIP      display-referred  mean difference seen when flipping between the two, at 67 pixels a degree: LDR-FLIP of
-                            Andersson et al. 2020 (NVIDIA's ``flip-evaluator``); 0..1, 0 where equal
-relMSE    linear HDR        ``mean((a - b)**2 / (b**2 + 0.01))``, `b` the reference, as in Rousselle et al. 2011; 0
-                            where equal; one bright dot can outweigh all else
-trimmed   linear HDR        relMSE without the `WORST` per cent of pixels, the channels of each averaged first
+                            Andersson et al. 2020 (NVIDIA's ``flip-evaluator``); 0..1, 0 if equal
+relMSE    linear HDR        ``mean((a - b)**2 / (b**2 + 0.01))``, `b` is the reference, as in Rousselle et al. 2011; 0
+                            if equal; one bright dot can outweigh everything else
+trimmed   linear HDR        relMSE without the worst `WORST` per cent of pixels; each pixel is the mean of its channels
 temporal  display-referred  ``mean(|(a1 - a0) - (b1 - b0)|)`` over two consecutive frames: flicker and lag; the temporal
-                            loss of Chaitanya et al. 2017; 0 where the error stands still
+                            loss of Chaitanya et al. 2017; 0 if the error does not change
 ========  ================  ==========================================================================================
 
-Display-referred: exposed, clipped to 0..1 and sRGB-encoded (`svgf_cl.io.display.display`). NaN in a picture makes its
-metrics NaN.
+Display-referred means exposed, clipped to 0..1 and sRGB-encoded (`svgf_cl.io.display.display`). If a picture contains
+NaN, its metrics are NaN.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ import numpy.typing as npt
 from svgf_cl.errors import SvgfError, install_extra
 from svgf_cl.io.display import Linear, display
 
-# Least extent of a picture that scikit-image's Gaussian window of sigma 1.5 fits in.
+# Least height and width of a picture for scikit-image's Gaussian window of sigma 1.5.
 SSIM_WINDOW = 11
 
 WORST = 1  # per cent of pixels
@@ -50,7 +50,7 @@ def measure(picture: Linear, reference: Linear, exposure: float = 0.0) -> Metric
     Raises
     ------
     SvgfError
-        Where the sizes differ, or are too small for SSIM.
+        If the sizes differ, or are too small for SSIM.
     """
     if picture.shape != reference.shape:
         raise SvgfError(f"expected two pictures of one shape, got {picture.shape} and {reference.shape}")
@@ -64,7 +64,7 @@ def psnr(shown: Linear, wanted: Linear) -> float:
 
 
 def decibels(squared_error: float) -> float:
-    """Return the peak signal-to-noise ratio of a mean squared error in dB, peak 1; inf where it is not above 0."""
+    """Return the peak signal-to-noise ratio of a mean squared error in dB, peak 1; inf if the error is not above 0."""
     return float("inf") if squared_error <= 0 else float(-10 * np.log10(squared_error))
 
 
@@ -83,7 +83,7 @@ def ssim(shown: Linear, wanted: Linear) -> float:
 
 
 def require_ssim() -> None:
-    """Raise `SvgfError`, with the command that installs it, where scikit-image is missing."""
+    """Raise `SvgfError`, with the command that installs it, if scikit-image is missing."""
     try:
         import skimage.metrics  # noqa: F401
     except ModuleNotFoundError as error:
@@ -93,7 +93,7 @@ def require_ssim() -> None:
 def flip(shown: Linear, wanted: Linear) -> float:
     """Return the mean FLIP error of two display-referred pictures."""
     if np.isnan(shown).any() or np.isnan(wanted).any():
-        return float("nan")  # the library scores a NaN like a colour
+        return float("nan")  # the library treats NaN like a colour
     return _flip(shown, wanted, in_colour=False)[1]
 
 
@@ -104,7 +104,7 @@ def flip_map(shown: Linear, wanted: Linear) -> npt.NDArray[np.uint8]:
 
 
 def _flip(shown: Linear, wanted: Linear, *, in_colour: bool) -> tuple[npt.NDArray[np.float32], float]:
-    """The library's map, and the mean error."""
+    """Return the library's map, and the mean error."""
     require_flip()
     import flip_evaluator
 
@@ -115,7 +115,7 @@ def _flip(shown: Linear, wanted: Linear, *, in_colour: bool) -> tuple[npt.NDArra
 
 
 def why_no_flip() -> str:
-    """Why FLIP cannot be measured here; nothing where it can."""
+    """Return why FLIP cannot be measured here; empty if it can."""
     try:
         require_flip()
     except SvgfError as error:
@@ -124,7 +124,7 @@ def why_no_flip() -> str:
 
 
 def require_flip() -> None:
-    """Raise `SvgfError`, with the command that installs it, where NVIDIA's evaluator is missing."""
+    """Raise `SvgfError`, with the command that installs it, if NVIDIA's evaluator is missing."""
     try:
         import flip_evaluator  # noqa: F401
     except ModuleNotFoundError as error:
@@ -143,9 +143,9 @@ def relmse(picture: Linear, reference: Linear) -> float:
 
 
 def trimmed_relmse(picture: Linear, reference: Linear) -> float:
-    """Return the relMSE of two linear pictures (H, W, 3) without the `WORST` per cent of pixels; NaN counts."""
+    """Return the relMSE of two linear pictures (H, W, 3) without the worst `WORST` per cent of pixels; NaN counts."""
     of_pixels = np.sort(relative_squares(picture, reference).mean(axis=-1), axis=None)
-    if np.isnan(of_pixels[-1]):  # sorted last, it would be left out
+    if np.isnan(of_pixels[-1]):  # NaN is sorted last, and would be left out
         return float("nan")
     return float(np.mean(of_pixels[: of_pixels.size - of_pixels.size * WORST // 100]))
 

@@ -1,4 +1,4 @@
-"""Open Image Denoise on the CPU, through the library that pyoidn brings."""
+"""Runs Open Image Denoise (OIDN) on the CPU, with the library in the package pyoidn."""
 
 from __future__ import annotations
 
@@ -14,13 +14,14 @@ from svgf_cl.errors import SvgfError, install_extra
 from svgf_cl.frame import Shape
 
 QUALITIES = ("high", "balanced", "fast")
-INPUTS, OUTPUT = ("color", "albedo", "normal"), "output"  # OIDN's names; those of `Frame`, too
+INPUTS, OUTPUT = ("color", "albedo", "normal"), "output"  # OIDN's names; `Frame` has the same names of inputs
 
 
 class OidnFilter:
-    """OIDN's filter for path-traced HDR light with albedo and normal, set up and run once: what follows is steady.
+    """OIDN's filter for path-traced HDR light with albedo and normal.
 
-    It reads and writes in place, without a copy, images that `load` fills.
+    The constructor runs it once, so that later runs take a steady time. It reads the images that `load` fills in place,
+    without a copy.
 
     Parameters
     ----------
@@ -29,14 +30,14 @@ class OidnFilter:
     quality : str
         One of `QUALITIES`.
     threads : int
-        >= 1; OIDN takes no more than there are cores.
+        >= 1; OIDN uses no more threads than there are cores.
     clean_aux : bool
-        Tell it that albedo and normal are free of noise. "high" is a larger network then; else it is "balanced".
+        Tell OIDN that albedo and normal are free of noise. Only then does "high" use a larger network than "balanced".
 
     Attributes
     ----------
     nbytes : int
-        What the process grew by: what OIDN holds beside the images.
+        Memory that OIDN uses in addition to the images, in bytes: how much the process grew.
 
     Raises
     ------
@@ -50,10 +51,12 @@ class OidnFilter:
         import pyoidn
 
         process = psutil.Process()
-        # Ones, not empty: memory counts from when it is first written to.
+        # Ones, not empty: memory counts only after it was first written to.
         self._images = {name: np.ones((*shape, 3), np.float32) for name in (*INPUTS, OUTPUT)}
         before = process.memory_info().rss
-        self._device = pyoidn.Device(pyoidn.OIDN_DEVICE_TYPE_CPU)  # one a filter, or they would share their memory
+        self._device = pyoidn.Device(
+            pyoidn.OIDN_DEVICE_TYPE_CPU
+        )  # one for each filter; else filters would share memory
         self._device.set_int("numThreads", threads)
         self._device.commit()
         self._filter = pyoidn.Filter(self._device, pyoidn.OIDN_FILTER_TYPE_RT)
@@ -68,28 +71,28 @@ class OidnFilter:
         self.nbytes: int = process.memory_info().rss - before
 
     def load(self, frame: Frame) -> None:
-        """Copy in what the filter reads of `frame`; without albedo, surfaces are white."""
+        """Copy the fields of `frame` that the filter reads; without albedo, surfaces are white."""
         for name in INPUTS:
             given = getattr(frame, name)
             self._images[name][:] = 1.0 if given is None else given
 
     def execute(self) -> None:
-        """Filter what was loaded; wait for the end."""
+        """Filter the loaded frame, and wait until it is done."""
         self._filter.execute()
 
     def check(self) -> None:
-        """Raise `SvgfError` where OIDN has reported an error since the last look."""
+        """Raise `SvgfError` if OIDN has reported an error since the last check."""
         if complaint := self._device.get_error():
             raise SvgfError(f"Open Image Denoise: {complaint}")
 
     def denoise(self, frame: Frame) -> npt.NDArray[np.float32]:
-        """Filter one frame; return the result, (H, W, 3), in memory of its own."""
+        """Filter one frame, and return a copy of the result, (H, W, 3)."""
         self.load(frame)
         self.execute()
         return self.result()
 
     def result(self) -> npt.NDArray[np.float32]:
-        """What was made last, (H, W, 3), in memory of its own."""
+        """Return a copy of the last result, (H, W, 3)."""
         self.check()
         result: npt.NDArray[np.float32] = self._images[OUTPUT].copy()
         return result
@@ -103,13 +106,13 @@ class OidnFilter:
 
 
 def threads_beside(device: cl.Device) -> int:
-    """As many threads as a CPU device has; all where `device` is no CPU."""
+    """Return the number of threads of a CPU device; if `device` is no CPU, that of the whole machine."""
     is_cpu = bool(device.type & cl.device_type.CPU)
     return device.max_compute_units if is_cpu else os.cpu_count() or 1
 
 
 def require_oidn() -> None:
-    """Raise `SvgfError`, with the command that installs them, where pyoidn or psutil is missing."""
+    """Raise `SvgfError`, with the command that installs them, if pyoidn or psutil is missing."""
     try:
         import psutil  # noqa: F401
         import pyoidn  # noqa: F401

@@ -1,12 +1,12 @@
 "use strict";
-// The page's controls hold all that is chosen; whatever is changed, `update` shows what they say.
+// The page's controls contain all choices; after every change, `update` shows them.
 
 const data = JSON.parse(document.getElementById("data").textContent);
 const controls = document.getElementById("controls");
 const tools = document.getElementById("tools");
 const divider = document.getElementById("divider");
 const scenes = [...document.querySelectorAll(".scene")];
-const MOST = 64; // times the whole picture
+const MOST = 64; // greatest zoom, as a multiple of the whole picture
 
 // Which scene, which rivals
 
@@ -26,7 +26,7 @@ function choose() {
   update();
 }
 
-// Only rivals that are in the scene can be put beside the divider.
+// Only rivals of the scene can be chosen for the two sides of the divider.
 function offer() {
   const present = [...stage().querySelectorAll("figure")].map(figure => figure.dataset.rival);
   ["left", "right"].forEach((side, index) => {
@@ -62,7 +62,7 @@ function split() {
   stage().style.setProperty("--split", divider.value);
 }
 
-// One view of all pictures: how large they are, and where their top left corner lies, in widths and heights of a pane
+// The view, the same for all pictures: their size, and their top left corner in widths and heights of a pane
 
 const view = { zoom: 1, x: 0, y: 0 };
 
@@ -89,7 +89,7 @@ function show() {
   if (!pane) return;
   const scale = pane.clientWidth * view.zoom / data.scenes[current].size[1];
   tools.elements.scale.value = `${Math.round(scale * 100)} %`;
-  // Pixels are shown as they are where they are enlarged; picking some to be shown small would be noise.
+  // Enlarged pixels are shown as sharp blocks; in a reduced picture, that would pick single pixels and look noisy.
   for (const image of scene().querySelectorAll("figure img")) {
     const shown = image.clientWidth * (stage().contains(image) ? view.zoom : 1) * devicePixelRatio;
     image.classList.toggle("crisp", shown > image.naturalWidth);
@@ -144,7 +144,7 @@ function svg(name, attributes, parent, text = "") {
   return made;
 }
 
-// A rival has a colour, a shape and a dash of its own, so that it can be told without the colour.
+// Each rival has its own colour, shape and dash, so that it can be recognised without the colour.
 function looksOf(rival) {
   const index = data.rivals.indexOf(rival);
   return { colour: COLOURS[index % COLOURS.length], shape: SHAPES[index % SHAPES.length], dash: DASHES[index % DASHES.length] };
@@ -166,7 +166,7 @@ function swatch(parent, rival) {
   mark(drawing, rival, 14, 6);
 }
 
-// Round numbers that hold all values between them.
+// Round numbers between which all values lie.
 function linear(values) {
   const low = Math.min(...values), high = Math.max(...values);
   const span = high - low || Math.abs(high) || 1;
@@ -192,7 +192,7 @@ function whole(values) {
   return { low, high: Math.max(high, low + 1), ticks, at: value => value };
 }
 
-// Draw axes and grid; gives the drawing and where in it values lie.
+// Draw axes and grid; return the drawing, and functions from values to positions in it.
 function axes(box, label, x, y, names) {
   const width = Math.max(box.clientWidth, 260), height = 300;
   const left = 14 + 7 * Math.max(...y.ticks.map(tick => String(tick).length)), right = width - 12, top = 24, bottom = height - 42;
@@ -236,7 +236,7 @@ function drawSpeed(box, key) {
   }
 }
 
-// Name a mark where there is room: right of it, left, above or below.
+// Label a mark where there is room: to the right, to the left, above or below.
 function label(drawing, name, x, y, taken) {
   const text = svg("text", {}, drawing, name.length > 32 ? `${name.slice(0, 31)}…` : name);
   const places = [["start", 10, 4], ["end", -10, 4], ["middle", 0, -11], ["middle", 0, 20], ["end", 6, -11], ["end", 6, 20],
@@ -278,7 +278,7 @@ function entry(rival) {
   return item;
 }
 
-// An animation starts anew when its image gets an address, be it the one that it has.
+// An animation starts again when its image's address is set, even to the same address.
 function restart(part) {
   for (const image of part.querySelectorAll("img")) image.src = image.getAttribute("src");
 }

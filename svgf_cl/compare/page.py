@@ -1,4 +1,4 @@
-"""The page of ``svgf-cl compare``: rival filters side by side, in one HTML file that needs nothing else."""
+"""Writes the page of ``svgf-cl compare``: rival filters side by side, in one HTML file that needs no other file."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from svgf_cl.io.atomic import write_text
 
 @dataclass(frozen=True)
 class Entry:
-    """What one rival made of one scene.
+    """The pictures and values of one rival in one scene.
 
     Parameters
     ----------
     rival : str
     values : mapping of str to float or None
-        By the measures' keys. None or NaN is "not measured".
+        By the measures' keys. None and NaN mean "not measured".
     curves : mapping of str to sequence of float or None
-        The same over the scene's frames.
+        The same for each of the scene's frames.
     milliseconds : float or None
-        Of a frame.
+        Time of a frame.
     picture : bytes
-        The frame that is shown, a WebP or PNG file. So are all images here.
+        The frame that is shown, as a WebP or PNG file; all images here are such files.
     heat : bytes or None
         Map of its error.
     clip : bytes or None
@@ -53,7 +53,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Scene:
-    """What all rivals made of one scene.
+    """The results of all rivals in one scene.
 
     Parameters
     ----------
@@ -69,13 +69,13 @@ class Scene:
     crop : tuple of int or None
         Left edge, top edge, width and height of the clips.
     row : int or None
-        Of the profiles.
+        The row of pixels in the profiles.
     entries : sequence of Entry
-        Reference and noisy input are among them.
+        The reference and the noisy input are among them.
     reference : str
-        The entry that is the reference. It is never marked as the best.
+        Name of the reference's entry. It is never marked as the best.
     noisy : str or None
-        The entry that is the noisy input. Neither is it.
+        Name of the noisy input's entry. It is never marked as the best.
     """
 
     name: str
@@ -92,15 +92,15 @@ class Scene:
 
 @dataclass(frozen=True)
 class Page:
-    """All that the page shows.
+    """The content of the page.
 
     Parameters
     ----------
     title : str
     about : mapping of str to str
-        How it was made: device, versions, command.
+        How the results were made: device, versions, command.
     measures : sequence of Measure
-        From left to right. The first is shown below the pictures too.
+        From left to right. The first is also shown below the pictures.
     scenes : sequence of Scene
     """
 
@@ -112,7 +112,7 @@ class Page:
 
 @dataclass(frozen=True)
 class Cell:
-    """A value in a table, whether it is the best of its column, and what else to say of it."""
+    """A value in a table, whether it is the best of its column, and a note on it."""
 
     text: str
     best: bool = False
@@ -121,7 +121,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Table:
-    """What was measured: a column for each measure, a row for each rival."""
+    """A table of values: a column for each measure, a row for each rival."""
 
     measures: Sequence[Measure]
     rows: Mapping[str, Sequence[Cell]]
@@ -130,7 +130,7 @@ class Table:
 UNKNOWN = "-"
 TIME = Measure("milliseconds", "Time", "ms", ".2f", -1, None, "How long a frame takes on the device.")
 
-Tally = Mapping[str, Mapping[str, Sequence[float]]]  # by rival and key: a value for each scene where there is one
+Tally = Mapping[str, Mapping[str, Sequence[float]]]  # by rival and key: the values of the scenes that have one
 
 
 def write(page: Page, path: Path) -> None:
@@ -139,7 +139,7 @@ def write(page: Page, path: Path) -> None:
 
 
 def render(page: Page) -> str:
-    """The page's HTML."""
+    """Return the page's HTML."""
     environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
     environment.filters["uri"] = data_uri
     environment.filters["gist"] = lambda entry: gist(entry, page.measures[:1])
@@ -157,12 +157,12 @@ def render(page: Page) -> str:
 
 
 def rivals(page: Page) -> list[str]:
-    """All rivals' names, in the order in which they come."""
+    """Return all rivals' names, in the order of their first entry."""
     return list(dict.fromkeys(entry.rival for scene in page.scenes for entry in scene.entries))
 
 
 def table(scenes: Sequence[Scene], measures: Sequence[Measure]) -> Table:
-    """Make the table of means over scenes; rivals and measures without a value are left out."""
+    """Return the table of means over scenes; rivals and measures without a value are left out."""
     found = tally(scenes)
     columns = [measure for measure in (*measures, TIME) if any(measure.key in values for values in found.values())]
     outside = {name for scene in scenes for name in (scene.reference, scene.noisy)}
@@ -171,7 +171,7 @@ def table(scenes: Sequence[Scene], measures: Sequence[Measure]) -> Table:
 
 
 def tally(scenes: Sequence[Scene]) -> Tally:
-    """Gather what was measured."""
+    """Return all measured values, by rival and key."""
     found: dict[str, dict[str, list[float]]] = {}
     for scene in scenes:
         for entry in scene.entries:
@@ -182,10 +182,10 @@ def tally(scenes: Sequence[Scene]) -> Tally:
 
 
 def column_cells(found: Tally, measure: Measure, outside: set[str | None]) -> dict[str, Cell]:
-    """Fill a column, by rival.
+    """Return the cells of a column, by rival.
 
-    Where a rival was measured in fewer scenes than others the cell says so, and is not the best: it may have missed
-    the hard ones.
+    If a rival was measured in fewer scenes than others, its cell says so and is never the best, as it may have missed
+    the hard scenes.
     """
     values = {rival: found[rival][measure.key] for rival in found if measure.key in found[rival]}
     scenes = max(map(len, values.values()))
@@ -197,7 +197,7 @@ def column_cells(found: Tally, measure: Measure, outside: set[str | None]) -> di
 
 
 def best(values: Mapping[str, float], measure: Measure) -> set[str]:
-    """Find who is best, more than one where they read the same; nobody is where there is no choice."""
+    """Return the best rivals: several if their texts are the same, none if there are fewer than two rivals."""
     if len(values) < 2 or not measure.aim:
         return set()
     top = max(values.values(), key=measure.merit)
@@ -209,7 +209,7 @@ def best(values: Mapping[str, float], measure: Measure) -> set[str]:
 
 
 def gist(entry: Entry, measures: Sequence[Measure]) -> list[str]:
-    """What to say of an entry below its picture: some measures, and its time."""
+    """Return the texts below an entry's picture: some measures, and its time."""
     said = [(measure, entry.values.get(measure.key)) for measure in measures]
     known = [(measure, value) for measure, value in said if value is not None and not math.isnan(value)]
     texts = [f"{measure.title} {measure.spell(value)} {measure.unit}".rstrip() for measure, value in known]
@@ -217,7 +217,7 @@ def gist(entry: Entry, measures: Sequence[Measure]) -> list[str]:
 
 
 def curves(scene: Scene, measures: Sequence[Measure]) -> list[Measure]:
-    """Tell which measures have curves in a scene; there are none over one frame."""
+    """Return the measures that have curves in a scene; a single frame has none."""
     if len(scene.frames) < 2:
         return []
     return [
@@ -228,12 +228,12 @@ def curves(scene: Scene, measures: Sequence[Measure]) -> list[Measure]:
 
 
 def points(curve: Sequence[float | None]) -> list[float | None]:
-    """A curve with gaps for what cannot be drawn, nor be written as JSON."""
+    """Return a curve with None for values that can neither be drawn nor written as JSON."""
     return [value if value is not None and math.isfinite(value) else None for value in curve]
 
 
 def data(page: Page) -> dict[str, Any]:
-    """What the page's script draws from; pictures are not in it, but in the page."""
+    """Return the data for the page's script; the pictures are in the page itself."""
     names = rivals(page)
     return {
         "rivals": names,
@@ -256,7 +256,7 @@ def data(page: Page) -> dict[str, Any]:
 
 
 def speed(page: Page, key: str) -> Iterator[tuple[str, float, float]]:
-    """Yield rival, mean time and mean value of each rival that has both."""
+    """Yield the name, the mean time and the mean value of each rival that has both."""
     for rival, values in tally(page.scenes).items():
         if key in values and TIME.key in values:
             time, value = fmean(values[TIME.key]), fmean(values[key])
@@ -265,7 +265,7 @@ def speed(page: Page, key: str) -> Iterator[tuple[str, float, float]]:
 
 
 def data_uri(image: bytes) -> Markup:
-    """Write an image into an address."""
+    """Return an image as a data URI."""
     kind = "png" if image.startswith(b"\x89PNG") else "webp"
     return Markup("data:image/{};base64,{}").format(kind, base64.b64encode(image).decode("ascii"))
 

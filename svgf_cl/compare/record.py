@@ -1,4 +1,4 @@
-"""What a comparison found, as files: JSON, CSV, and the parts by which a run that was broken off is resumed."""
+"""Writes the results of a comparison: JSON, CSV, and the parts from which an interrupted run is resumed."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from svgf_cl.compare.page import Entry, Page, Scene
 from svgf_cl.device.tuning import kernels_digest
 from svgf_cl.io.atomic import read_json, write_text
 
-IMAGES = ("picture", "heat", "clip", "profile")  # of an `Entry`
-NEVER = "inf"  # what JSON has no number for; a value that was not measured is null
+IMAGES = ("picture", "heat", "clip", "profile")  # the images of an `Entry`
+NEVER = "inf"  # JSON has no number for it; a value that was not measured is null
 
 
 def results(page: Page) -> str:
-    """All figures as JSON."""
+    """Return all values as JSON."""
     scenes = [
         {
             "name": scene.name,
@@ -43,7 +43,7 @@ def results(page: Page) -> str:
 
 
 def figures(entry: Entry) -> dict[str, Any]:
-    """What was measured of a rival."""
+    """Return the measured values of a rival."""
     return {
         "milliseconds": entry.milliseconds,
         "values": {key: plain(value) for key, value in entry.values.items()},
@@ -52,14 +52,14 @@ def figures(entry: Entry) -> dict[str, Any]:
 
 
 def plain(value: float | None) -> float | str | None:
-    """A number as JSON has it."""
+    """Return a number in a form that JSON has."""
     if value is None or math.isnan(value):
         return None
     return value if math.isfinite(value) else NEVER if value > 0 else f"-{NEVER}"
 
 
 def table(page: Page) -> str:
-    """All values as CSV: one row for each scene and filter."""
+    """Return all values as CSV: one row for each scene and filter."""
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     keys = [each.key for each in page.measures]
@@ -73,16 +73,16 @@ def table(page: Page) -> str:
 
 
 def part_name(footage_identity: str, rivals: Sequence[str], exposure: float, device: str) -> str:
-    """Name the part of a run that has all its own inputs, and this state of svgf_cl, in common with it.
+    """Return a file name for a scene's results; it changes with all inputs and with svgf_cl's own code.
 
     Parameters
     ----------
     footage_identity : str
     rivals : sequence of str
-        In order: the first chooses what clips show.
+        In order: the first decides which piece clips show.
     exposure : float, stops
     device : str
-        What times were measured on.
+        The device on which times were measured.
     """
     inputs = json.dumps([footage_identity, list(rivals), exposure, device, why_no_flip(), code_digest()])
     return hashlib.sha256(inputs.encode()).hexdigest()[:24]
@@ -90,7 +90,7 @@ def part_name(footage_identity: str, rivals: Sequence[str], exposure: float, dev
 
 @functools.cache
 def code_digest() -> str:
-    """What identifies this state of svgf_cl: kernels, code, and weights of networks."""
+    """Return a digest of svgf_cl: its kernels, its code, and the weights of its networks."""
     code = hashlib.sha256(kernels_digest().encode())
     files = Path(svgf_cl.__file__).parent.rglob("*")
     for source in sorted(path for path in files if path.suffix in (".py", ".json")):
@@ -99,7 +99,7 @@ def code_digest() -> str:
 
 
 def write_part(path: Path, scene: Scene) -> None:
-    """Keep a scene that is done."""
+    """Write the results of a finished scene to a file."""
     record = asdict(scene)
     for entry in record["entries"]:
         entry |= {name: base64.b64encode(entry[name]).decode("ascii") for name in IMAGES if entry[name] is not None}
@@ -109,7 +109,7 @@ def write_part(path: Path, scene: Scene) -> None:
 
 
 def read_part(path: Path) -> Scene | None:
-    """The scene that an earlier run has kept there; None where there is none, or it cannot be read."""
+    """Return the scene that an earlier run wrote to a file; None if there is no such file, or it cannot be read."""
     try:
         record = read_json(path)
         entries = [read_entry(each) for each in record.pop("entries")]
@@ -124,7 +124,7 @@ def read_part(path: Path) -> Scene | None:
 
 
 def read_entry(record: dict[str, Any]) -> Entry:
-    """One rival of a kept scene."""
+    """Return one rival's entry from the record of a scene."""
     images = {name: base64.b64decode(record[name], validate=True) for name in IMAGES if record[name] is not None}
     values = {key: number(value) for key, value in record["values"].items()}
     curves = {key: [number(value) for value in each] for key, each in record["curves"].items()}
@@ -132,12 +132,12 @@ def read_entry(record: dict[str, Any]) -> Entry:
 
 
 def number(value: float | str | None) -> float:
-    """What `plain` wrote."""
+    """Return the number that `plain` wrote."""
     return math.nan if value is None else float(value)
 
 
 def measured(scenes: Sequence[Scene]) -> list[Measure]:
-    """The measures of which any rival of any scene has a value."""
+    """Return the measures that have a value for at least one rival in one scene."""
 
     def has(key: str) -> bool:
         entries = (entry for scene in scenes for entry in scene.entries)

@@ -1,4 +1,4 @@
-"""Footage from files: a user's frames with references, or pictures with references alone."""
+"""Footage from files: a user's frames with references, or only pictures with references."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from svgf_cl.io.shot import Shot, moved
 
 @dataclass(frozen=True)
 class Recorded:
-    """Frames of any renderer, and references of some of them.
+    """Frames of any renderer, and references for some of them.
 
     Parameters
     ----------
     paths : mapping of int to Path
         The frames' files by number.
     references : mapping of int to Path
-        Those of the references; each has its frame.
+        The references' files by number; each number is also in `paths`.
     jitter : bool
-        Whether the renderer moved its rays within the pixel: filters then antialias over time.
+        Whether the renderer moved its rays within the pixel; filters then antialias over time.
     """
 
     paths: Mapping[int, Path]
@@ -41,41 +41,41 @@ class Recorded:
 
     @property
     def note(self) -> str:
-        """What there is to know of the figures."""
+        """A remark on the values."""
         rays = "antialiased over time" if self.jitter else "not antialiased"
         return f"{rays}; one reference a frame, whose own noise counts as error"
 
     @property
     def name(self) -> str:
-        """The folder's, or that of the only file."""
+        """The folder's name, or the file's if there is only one."""
         first = next(iter(self.paths.values()))
         return first.parent.resolve().name if len(self.paths) > 1 else first.stem
 
     @property
     def numbers(self) -> Sequence[int]:
-        """In order."""
+        """The numbers of all frames, in order."""
         return sorted(self.paths)
 
     @property
     def judged(self) -> Sequence[int]:
-        """In order."""
+        """The numbers of the frames with a reference, in order."""
         return sorted(self.references)
 
     @property
     def steps(self) -> int:
-        """One a reference."""
+        """One step for each reference."""
         return len(self.references)
 
     @property
     def identity(self) -> str:
-        """Names, sizes and times of all files, and what is known of their rays."""
+        """Names, sizes and times of all files, and `jitter`."""
         files = [*self.paths.values(), *self.references.values()]
         stamps = [f"{path.resolve()}:{path.stat().st_size}:{path.stat().st_mtime_ns}" for path in files]
         return " ".join((*stamps, f"jitter={self.jitter}"))
 
     @cached_property
     def shape(self) -> Shape:
-        """Of the first reference; `FileError` where it is too small to be measured."""
+        """The first reference's (height, width); raises `FileError` if it is too small for SSIM."""
         path = self.references[self.judged[0]]
         height, width, _ = read_picture(path).shape
         if min(height, width) < SSIM_WINDOW:
@@ -86,7 +86,7 @@ class Recorded:
         return height, width
 
     def frames(self) -> Iterator[Frame]:
-        """Frames as `svgf-cl denoise` reads them, on their display window: that is where references show something."""
+        """Yield the frames as `svgf-cl denoise` reads them, cut to their display window, which references show."""
         paths = [self.paths[number] for number in self.numbers]
         shot = Shot(paths)
         display = read_windows(paths[0]).display
@@ -108,10 +108,10 @@ class Recorded:
 
 @dataclass(frozen=True)
 class Pictures(Recorded):
-    """Pictures and references without any G-buffer: frames that show nothing but their colour."""
+    """Pictures and references without a G-buffer: frames that contain only a colour."""
 
     def frames(self) -> Iterator[Frame]:
-        """The pictures, as frames that hit nothing."""
+        """Yield the pictures as frames in which no ray hits a surface."""
         for number in self.numbers:
             picture = read_picture(self.paths[number])
             check_size(self.paths[number], picture.shape[:2], self.shape)
@@ -119,12 +119,12 @@ class Pictures(Recorded):
 
 
 def open_frames(frames: Sequence[Path], reference: Path, *, jitter: bool) -> Recorded:
-    """Frames, files or their folder, and a picture or a folder of them that says what some converge to.
+    """Open frames (files or their folder) and their references (a picture or a folder of pictures).
 
     Raises
     ------
     FileError
-        Where they are no sequence without gaps, or a reference has no frame.
+        If the frames are no sequence without gaps, or a reference has no frame.
     """
     files = find_frames(frames, allow_gaps=True)
     for path in sorted(after_gaps(files)):
@@ -134,12 +134,12 @@ def open_frames(frames: Sequence[Path], reference: Path, *, jitter: bool) -> Rec
 
 
 def find_references(reference: Path, numbers: Sequence[int]) -> dict[int, Path]:
-    """The files that say what some frames converge to, by the frames' numbers: a picture, or those of a folder.
+    """Return the references' files by number: a single picture, or those of a folder.
 
     Raises
     ------
     FileError
-        Where one has no frame among `numbers`.
+        If a reference has no frame among `numbers`.
     """
     require(reference)
     if reference.is_dir():
@@ -147,7 +147,7 @@ def find_references(reference: Path, numbers: Sequence[int]) -> dict[int, Path]:
     elif len(numbers) == 1:
         references = dict.fromkeys(numbers, reference)
     elif frame_number(reference) is None:
-        raise FileError(f"{reference}: expected in its name the number of one of the {len(numbers)} frames, found none")
+        raise FileError(f"{reference}: expected the number of one of the {len(numbers)} frames in its name, found none")
     else:
         references = {number_of(reference): reference}
     for number, path in references.items():
@@ -157,12 +157,12 @@ def find_references(reference: Path, numbers: Sequence[int]) -> dict[int, Path]:
 
 
 def open_pictures(pictures: Path, references: Path) -> Pictures:
-    """Two pictures; or two folders, paired by number: pictures without a reference are left out.
+    """Open two pictures, or two folders of pictures with the same numbers; pictures without a reference are left out.
 
     Raises
     ------
     FileError
-        Where one is a file and the other a folder, one holds no sequence, or a reference has no picture.
+        If one is a file and the other a folder, if a folder has no sequence, or if a reference has no picture.
     """
     require(pictures)
     require(references)
@@ -179,12 +179,18 @@ def open_pictures(pictures: Path, references: Path) -> Pictures:
 
 
 def by_number(folder: Path, stem: str) -> dict[int, Path]:
-    """The pictures of a folder by number, those called `stem` if any are; `FileError` where there is no sequence."""
+    """Return the pictures of a folder by number, only those called `stem` if there are any.
+
+    Raises
+    ------
+    FileError
+        If the folder has no sequence.
+    """
     return {number_of(path): path for path in find_numbered(folder, stem)}
 
 
 def with_color(frame: Frame) -> Frame:
-    """The same frame with a colour, which may be given as two signals only."""
+    """Return the frame with a colour, which is the sum of its two signals if it has no colour itself."""
     if frame.color is not None:
         return frame
     emission = 0.0 if frame.emission is None else frame.emission
@@ -192,7 +198,7 @@ def with_color(frame: Frame) -> Frame:
 
 
 def bare_frame(picture: Linear) -> Frame:
-    """A frame of which nothing is known but its colour (H, W, 3)."""
+    """Return a frame that contains only a colour (H, W, 3)."""
     shape = picture.shape[:2]
     nothing = np.zeros((*shape, 3), np.float32)
     depth = np.full(shape, np.inf, np.float32)
@@ -200,6 +206,6 @@ def bare_frame(picture: Linear) -> Frame:
 
 
 def check_size(path: Path, have: Shape, want: Shape) -> None:
-    """Raise `FileError` where a file is not of the size of the references."""
+    """Raise `FileError` if a file's size is not that of the references."""
     if have != want:
         raise FileError(f"{path}: expected {extent(want)} pixels as in the references, got {extent(have)}")

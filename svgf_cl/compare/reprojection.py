@@ -1,8 +1,8 @@
-"""Where the surface of each pixel was in the frame before, by exact motion, and whether it was seen there.
+"""Finds each pixel's surface in the previous frame, by exact motion, and whether it was visible there.
 
-A pixel p was at ``p + motion``, between four pixels of the frame before. Which of them show the same surface is decided
-as the oracle decides it (`svgf_cl.oracle.temporal.consistent`): the same id where there are ids, the depth that motion
-and slope let expect, a normal turned by less than 26 degrees, inside the image. The sky is no surface.
+A pixel p was at ``p + motion``, between four pixels of the previous frame. One of them shows the same surface if the
+oracle says so (`svgf_cl.oracle.temporal.consistent`): it lies inside the image and has the same id (if there are ids),
+the depth expected from motion and slope, and a normal turned by less than 26 degrees. The sky is no surface.
 """
 
 from __future__ import annotations
@@ -20,23 +20,23 @@ from svgf_cl.io.display import Linear
 from svgf_cl.oracle.taps import Array, Indices, bilinear_taps, locate, reprojected
 from svgf_cl.oracle.temporal import consistent, demodulate
 
-LEAST = 0.01  # weight of a tap that counts: motion is known to a hundredth of a pixel at best
+LEAST = 0.01  # least weight of a tap that counts: motion is exact to a hundredth of a pixel at best
 
 
 @dataclass(frozen=True, eq=False)
 class Reprojection:
-    """The four pixels of the frame before around the place where each pixel's surface was.
+    """The four pixels of the previous frame around the place where each pixel's surface was.
 
     Parameters
     ----------
     rows, columns : (4, H, W)
-        Clamped into the image.
+        Their positions, clamped to the image.
     weight : (4, H, W)
-        Bilinear; adds up to 1.
+        Their bilinear weights, whose sum is 1.
     inside, same : (4, H, W) bool
-        Whether they lie in the image; whether they show the same surface.
+        Whether they lie in the image, and whether they show the same surface.
     hit : (H, W) bool
-        Where there is a surface now.
+        Where the current frame shows a surface.
     """
 
     rows: Indices
@@ -48,7 +48,7 @@ class Reprojection:
 
     @classmethod
     def between(cls, earlier: Frame, later: Frame) -> Reprojection:
-        """Find the pixels of the earlier one of two consecutive frames."""
+        """Find the pixels in the earlier of two consecutive frames."""
         past, now = (demodulate(frame)[1] for frame in (earlier, later))
         x, y, weight = bilinear_taps(reprojected(now.motion))
         rows, columns, inside = locate(x, y, later.shape)
@@ -56,27 +56,27 @@ class Reprojection:
 
     @cached_property
     def seen(self) -> Mask:
-        """Which of the four show the same surface and count, (4, H, W)."""
+        """The pixels of the four that count and show the same surface, (4, H, W)."""
         return self.same & self._counts
 
     @cached_property
     def found(self) -> Mask:
-        """Where all that is mixed of the frame before shows the same surface, (H, W)."""
+        """The surface's pixels for which all of the four that count show the same surface, (H, W)."""
         return self.hit & (self.seen | ~self._counts).all(axis=0)
 
     @cached_property
     def uncovered(self) -> Mask:
-        """Where nothing of the frame before shows the same surface, though it was in the image, (H, W)."""
+        """The surface's pixels for which none of the four shows the same surface, though they are inside, (H, W)."""
         return self.hit & (self.inside | ~self._counts).all(axis=0) & ~self.seen.any(axis=0)
 
     @cached_property
     def nearest(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Row and column, (H, W), of the nearest of the four, among those of the same surface if there are any."""
+        """Row and column, (H, W), of the nearest of the four; of those that show the same surface if any does."""
         chosen = np.argmax(self.weight + self.seen, axis=0)[None]
         return np.take_along_axis(self.rows, chosen, 0)[0], np.take_along_axis(self.columns, chosen, 0)[0]
 
     def warped(self, earlier: Linear) -> Linear:
-        """A picture of the frame before, (H, W, 3), where its surfaces are now; bilinear."""
+        """Return a picture of the previous frame, (H, W, 3), warped bilinearly to where its surfaces are now."""
         picture: Linear = np.einsum("thw,thwc->hwc", self.weight, earlier[self.rows, self.columns])
         return picture
 

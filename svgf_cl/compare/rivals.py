@@ -1,4 +1,4 @@
-"""What is compared: filters by their settings, and what they are held against, all with one method, `denoise`."""
+"""The rivals of a comparison: this project's filters, Open Image Denoise and the noisy input, all with `denoise`."""
 
 from __future__ import annotations
 
@@ -20,33 +20,34 @@ from svgf_cl.frame import Frame, Shape
 from svgf_cl.io.display import Linear
 
 OIDN, OIDN_ACCUMULATED = "oidn", "oidn+accumulation"
-OTHERS = (OIDN, OIDN_ACCUMULATED)  # beside the filters
+OTHERS = (OIDN, OIDN_ACCUMULATED)  # rivals that are not filters of this project
 
 
-Parser = Callable[[str, Sequence[str], str], Filter]  # of a name, settings as texts, and the option they came by
+# Makes a filter from its name, its settings as texts, and the option that contained them (for errors).
+Parser = Callable[[str, Sequence[str], str], Filter]
 
 
 class Maker(Protocol):
-    """Makes pictures of consecutive frames; `milliseconds` is what its filter took for the last, without transfers."""
+    """Makes pictures of consecutive frames; `milliseconds` is its filter's time for the last one, without transfers."""
 
     milliseconds: float | None
 
     def denoise(self, frame: Frame) -> Linear:
-        """The picture of the next frame, (H, W, 3)."""
+        """Return the picture of the next frame, (H, W, 3)."""
 
 
 class Noisy:
-    """The frames as they come in."""
+    """The noisy frames, unchanged."""
 
     milliseconds: float | None = None
 
     def denoise(self, frame: Frame) -> Linear:
-        """The frame's colour."""
+        """Return the frame's colour."""
         return np.asarray(frame.color)
 
 
 class Filtered:
-    """A filter of this project; its time is that of its passes on the device."""
+    """A filter of this project; its time is the sum of its passes on the device."""
 
     milliseconds: float | None = None
 
@@ -61,7 +62,7 @@ class Filtered:
 
 
 class FrameByFrame:
-    """Open Image Denoise, quality "high", each frame by itself; its time is that of the call that filters."""
+    """Open Image Denoise, quality "high", each frame by itself; its time is that of the filter's call."""
 
     milliseconds: float | None = None
 
@@ -69,7 +70,7 @@ class FrameByFrame:
         self._filter = OidnFilter(shape, "high", threads_beside(default_device()))
 
     def denoise(self, frame: Frame) -> Linear:
-        """Run Open Image Denoise; an infinite pixel, which would spoil the whole picture, comes in black."""
+        """Run Open Image Denoise; infinite pixels are set to black, as they would spoil the whole picture."""
         color = np.asarray(frame.color)
         self._filter.load(replace(frame, color=np.where(np.isfinite(color), color, 0.0)))
         begin = time.perf_counter()
@@ -79,7 +80,7 @@ class FrameByFrame:
 
 
 class FrameByFrameAccumulated:
-    """Open Image Denoise, quality "high", whose pictures are accumulated over time like noisy light."""
+    """Open Image Denoise, quality "high", and then temporal accumulation of its pictures, like noisy light."""
 
     milliseconds: float | None = None
 
@@ -96,15 +97,15 @@ class FrameByFrameAccumulated:
 
 @dataclass(frozen=True)
 class Rival:
-    """Something that takes part, by the text that asks for it.
+    """A rival, as the user's text describes it.
 
     Parameters
     ----------
     name : str
     settings : Filter, optional
-        Of a filter; None for `OTHERS`.
+        The filter's settings; None for `OTHERS`.
     says_taa : bool
-        Whether the text says if there is to be temporal antialiasing.
+        Whether the text turns temporal antialiasing on or off.
     """
 
     name: str
@@ -112,7 +113,7 @@ class Rival:
     says_taa: bool = False
 
     def maker(self, shape: Shape, *, jitter: bool) -> Maker:
-        """Make it for frames of a size; with `jitter` filters antialias over time, unless the text says otherwise."""
+        """Make the rival for frames of a size; with `jitter` filters antialias over time, unless the text sets it."""
         if self.settings is not None:
             return Filtered(shape, antialiased(self.settings) if jitter and not self.says_taa else self.settings)
         if self.name == OIDN:
@@ -121,12 +122,12 @@ class Rival:
 
 
 def antialiased(settings: Filter) -> Filter:
-    """The same filter with temporal antialiasing, if it has any."""
+    """Return the filter with temporal antialiasing, if it has such a setting."""
     return replace(settings, taa=True) if isinstance(settings, TemporalFilter) else settings
 
 
 def parse_rivals(text: str, parse: Parser) -> list[Rival]:
-    """Read ``svgf,taps=5x5,eaw,oidn``: names, each followed by the settings that it is to have.
+    """Read a text such as ``svgf,taps=5x5,eaw,oidn``: names, each followed by its settings.
 
     Parameters
     ----------
@@ -136,7 +137,7 @@ def parse_rivals(text: str, parse: Parser) -> list[Rival]:
     Raises
     ------
     SvgfError
-        For an unknown name or setting, a rival that is there twice, or Open Image Denoise where it is not installed.
+        For an unknown name or setting, a rival that occurs twice, or Open Image Denoise if it is not installed.
     """
     split: list[list[str]] = []
     for part in text.split(","):
@@ -151,7 +152,7 @@ def parse_rivals(text: str, parse: Parser) -> list[Rival]:
 
 
 def rival(name: str, parts: Sequence[str], parse: Parser) -> Rival:
-    """One rival from its name and settings."""
+    """Return one rival from its name and settings."""
     kind, *settings = parts
     if kind in OTHERS:
         if settings:
@@ -165,7 +166,7 @@ def rival(name: str, parts: Sequence[str], parse: Parser) -> Rival:
 
 
 def usual_rivals() -> str:
-    """Who takes part where nobody says so: all filters, and Open Image Denoise where it is installed."""
+    """Return the default rivals: all filters, and Open Image Denoise if it is installed."""
     try:
         require_oidn()
     except SvgfError:
@@ -174,5 +175,5 @@ def usual_rivals() -> str:
 
 
 def makers(rivals: Sequence[Rival], shape: Shape, *, jitter: bool) -> Mapping[str, Maker]:
-    """All rivals for frames of a size, by name."""
+    """Make all rivals for frames of a size, by name."""
     return {each.name: each.maker(shape, jitter=jitter) for each in rivals}

@@ -1,4 +1,4 @@
-"""What one picture is measured by: on its own, and beside the one before."""
+"""Measures one picture by itself, and in comparison with the previous one."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from svgf_cl.io.display import Linear, display
 
 @dataclass(frozen=True, eq=False)
 class Sight:
-    """A linear picture, (H, W, 3), and what it is judged by."""
+    """A linear picture, (H, W, 3), and the view that judges it."""
 
     picture: Linear
     view: View
@@ -33,7 +33,7 @@ class Sight:
 
 @dataclass(frozen=True)
 class Score:
-    """One picture of one frame.
+    """The measures of one picture.
 
     Parameters
     ----------
@@ -75,14 +75,14 @@ class Score:
 
 @dataclass(frozen=True)
 class Change:
-    """What becomes of a picture in the next.
+    """The measures of the change from one picture to the next.
 
     Parameters
     ----------
     everywhere, on_surfaces : Share
         How much the error changes: everywhere, and on surfaces of one colour.
     warped, warped_truth : Share
-        What exact motion does not explain, of the pictures and of the truth.
+        The change that exact motion does not explain, of the pictures and of the truth.
     """
 
     everywhere: Share

@@ -1,4 +1,4 @@
-"""How much of something is there, as a ratio of two sums: over pixels, and over as many frames as one likes."""
+"""`Share`: a ratio of two sums over pixels, which can be added up over frames."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Share:
-    """`part` of `whole`; added up, both sums grow, so that a frame with little to see counts little.
+    """The ratio of `part` to `whole`. Adding shares adds both sums, so that a frame with few pixels counts little.
 
     Parameters
     ----------
     part, whole : float
-        Of one unit.
+        Both have the same unit. In an empty share both are 0.
     """
 
     part: float = 0.0
@@ -23,5 +23,5 @@ class Share:
 
     @property
     def value(self) -> float:
-        """The ratio; NaN where there is nothing, `whole` not being above 0."""
+        """The ratio; NaN if `whole` is not above 0."""
         return self.part / self.whole if self.whole > 0 else float("nan")

@@ -1,7 +1,7 @@
-"""Where frames show one surface, a texture that moves, light that changes, and no lamp.
+"""Finds where frames show one surface, a moving texture, changing light, or no lamp.
 
-Frames may lack fields. Without ids or albedo nothing is known to be one surface, and without ids nothing to be what it
-was. Without emission there are no lamps.
+Frames may lack fields. Without ids or albedo, no pixel counts as one surface. Without ids, no pixel counts as unmoved.
+Without emission, there are no lamps.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ from svgf_cl.io.display import Linear
 from svgf_cl.oracle.albedo import divisor
 from svgf_cl.oracle.taps import luminance, shifted, square
 
-SAME_NORMAL = 0.9  # cosine from which two pixels show one surface
+SAME_NORMAL = 0.9  # least cosine between the normals of one surface
 SAME_ALBEDO = 0.02
-STILL = 0.1  # pixels of motion; with more, a shadow's edge that rests changes light at its pixels, too
-CHANGED = 0.1  # of the light in a window
+STILL = 0.1  # pixels of motion; with more, even a resting shadow's edge changes the light of its pixels
+CHANGED = 0.1  # share of the light in a window
 
 
 def one_surface(frame: Frame, radius: int = RADIUS, *, one_colour: bool = True) -> Mask:
-    """Where a pixel and all within `radius` show the same object, turned the same way, of the same colour, (H, W).
+    """Return where all pixels within `radius` show the same object with the same normal and colour, (H, W).
 
-    With `one_colour` false, of any colours.
+    With `one_colour` false, the colours may differ.
     """
     if frame.id is None or frame.albedo is None:
         return np.zeros(frame.shape, np.bool_)
@@ -41,7 +41,7 @@ def one_surface(frame: Frame, radius: int = RADIUS, *, one_colour: bool = True) 
 
 
 def reflecting(frame: Frame) -> Mask:
-    """Where neither a pixel nor one of the eight around it shows a lamp or the sky, (H, W)."""
+    """Return where neither a pixel nor one of its eight neighbours shows a lamp or the sky, (H, W)."""
     dark: Mask = frame.depth < np.inf
     if frame.emission is not None:
         dark = dark & (frame.emission == 0).all(axis=-1)
@@ -53,7 +53,10 @@ def reflecting(frame: Frame) -> Mask:
 
 
 def moving_texture(frame: Frame, radius: int = RADIUS) -> Mask:
-    """Where a pixel and all within `radius` show one surface that moves, and albedo bends by `SAME_ALBEDO`, (H, W)."""
+    """Return where a pixel lies on a moving texture, (H, W).
+
+    All pixels within `radius` show one moving surface, and the Laplacian of its albedo is above `SAME_ALBEDO`.
+    """
     if frame.albedo is None:
         return np.zeros(frame.shape, np.bool_)
     textured = np.abs(laplacian(frame.albedo)) > SAME_ALBEDO
@@ -61,13 +64,13 @@ def moving_texture(frame: Frame, radius: int = RADIUS) -> Mask:
 
 
 def without_albedo(picture: Linear, frame: Frame) -> Plane:
-    """Luminance of a picture's light, demodulated as the filters do it, (H, W)."""
+    """Return the luminance of a picture's light without albedo, which is divided out as filters do it, (H, W)."""
     light = np.asarray(picture, np.float64)
     return luminance(light if frame.albedo is None else light / divisor(np.asarray(frame.albedo, np.float64)))
 
 
 def still(earlier: Frame, later: Frame) -> NDArray[np.float64]:
-    """1 where the later frame shows what the earlier one does at that pixel, else 0, (H, W)."""
+    """Return 1 where a pixel shows the same surface in both frames, else 0, (H, W)."""
     if earlier.id is None or later.id is None:
         return np.zeros(later.shape)
     same: Mask = (earlier.id == later.id) & (speed(later) < STILL)
@@ -75,20 +78,20 @@ def still(earlier: Frame, later: Frame) -> NDArray[np.float64]:
 
 
 def speed(frame: Frame) -> Plane:
-    """How far surfaces have moved since the frame before, in pixels, (H, W)."""
+    """Return how far surfaces have moved since the previous frame, in pixels, (H, W)."""
     pixels: Plane = np.hypot(frame.motion[..., 0], frame.motion[..., 1])
     return pixels
 
 
 def relit(earlier: tuple[Plane, Plane], later: tuple[Plane, Plane], unmoved: NDArray[np.float64]) -> Mask:
-    """Around which pixels nothing moves but light, by `CHANGED` of itself on average, (H, W).
+    """Return around which pixels only the light changes, by a share `CHANGED` on average, (H, W).
 
     Parameters
     ----------
     earlier, later : two of (H, W)
-        Light of two consecutive frames, as known from each half of the truth: its noise is no change.
+        Light of two consecutive frames in each half of the truth, so that noise does not count as change.
     unmoved : (H, W)
-        As `still` has it.
+        The result of `still`.
     """
     first, second = (after - before for before, after in zip(earlier, later, strict=True))
     mean = window_mean(0.5 * (later[0] + later[1]))

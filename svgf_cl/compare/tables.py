@@ -1,4 +1,4 @@
-"""What a comparison prints: a table of each scene or, of pictures, of each frame."""
+"""The tables that a comparison prints: one row for each filter, or, for pictures, for each frame."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Table = tuple[list[str], list[list[str]]]  # titles of the columns, rows
 
 
 def scene_table(page: Page, scene: Scene) -> Table:
-    """A row for each filter."""
+    """Return a table with a row for each filter."""
     columns = [each for each in page.measures if each.key in SHOWN]
     rows = []
     for entry in scene.entries:
@@ -23,7 +23,7 @@ def scene_table(page: Page, scene: Scene) -> Table:
 
 
 def frame_table(page: Page, scene: Scene) -> Table:
-    """A row for each frame of the only pictures there are, and one for all together."""
+    """Return a table of the only pictures, with a row for each frame and one for all frames together."""
     (entry,) = [each for each in scene.entries if each.values]
     columns = [each for each in page.measures if each.key in BY_FRAME]
     rows = [
@@ -35,5 +35,5 @@ def frame_table(page: Page, scene: Scene) -> Table:
 
 
 def spelled(measure: Measure, value: float | None) -> str:
-    """A figure; nothing where there is none."""
+    """Return a value as text; empty if it was not measured."""
     return "" if value is None or value != value else measure.spell(value)

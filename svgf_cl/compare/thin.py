@@ -1,12 +1,13 @@
-"""Thin geometry: bars, leaves and gaps of a few pixels, which a picture shows late, in part, or not at all.
+"""Thin geometry: bars, leaves and gaps of a few pixels, which a picture may show late, in part, or not at all.
 
-A pixel is thin where, along its row or its column, within `REACH` pixels on both sides there is another id, or on both
-sides something farther, or on both sides something nearer (`svgf_cl.compare.edges`). So things, and gaps
-between them, are thin up to a width of 2 pixels, and the middle of 3. A slope is not, being farther on one side alone.
+A pixel is thin if within `REACH` pixels on both sides, along its row or its column, there is another id, or on both
+sides a farther surface, or on both sides a nearer one (`svgf_cl.compare.edges`). So objects, and gaps between them, are
+thin up to a width of 2 pixels; of a width of 3, only the middle is thin. A slope is not thin, as it is farther on one
+side only.
 
 ``unsettled`` is the share of thin pixels, over all frames, whose display-referred luminance differs from the truth's by
-more than `SETTLED`: 0..1, best 0. Each pixel of each frame counts once, so that the camera may move. The truth is the
-mean of both halves, and its noise counts: it matters where its standard deviation comes near `SETTLED`.
+more than `SETTLED`: 0..1, best 0. Each pixel of each frame counts once, so the camera may move. The truth is the mean
+of both halves. Its noise counts, and matters if its standard deviation comes near `SETTLED`.
 """
 
 from __future__ import annotations
@@ -25,20 +26,20 @@ SETTLED = 0.1
 
 
 def unsettled(shown: Linear, truth: Linear, where: Mask) -> Share:
-    """How many of the pixels `where` (H, W) are wrong in a display-referred picture; both (H, W, 3)."""
-    settled = np.abs(luminance(np.asarray(shown - truth, np.float64))) <= SETTLED  # not where it is NaN
+    """Return how many of the pixels `where` (H, W) are wrong; picture and truth are display-referred, (H, W, 3)."""
+    settled = np.abs(luminance(np.asarray(shown - truth, np.float64))) <= SETTLED  # False for NaN
     return Share(float(np.sum(where & ~settled)), float(np.sum(where)))
 
 
 def thin(frame: Frame) -> Mask:
-    """Where geometry is thin, (H, W)."""
+    """Return where geometry is thin, (H, W)."""
     across, along = ((beside(frame, (-dx, -dy)) & beside(frame, (dx, dy))).any(axis=0) for dx, dy in ((1, 0), (0, 1)))
     mask: Mask = np.logical_or(across, along)
     return mask
 
 
 def beside(frame: Frame, side: Offset) -> Mask:
-    """Whether there is another id, something farther, something nearer within `REACH` on this side, (3, H, W)."""
+    """Return whether another id, a farther, or a nearer surface is within `REACH` pixels on a side, (3, H, W)."""
     steps = [other(frame, (reach * side[0], reach * side[1])) for reach in range(1, REACH + 1)]
     mask: Mask = np.any(steps, axis=0)
     return mask

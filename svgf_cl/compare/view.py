@@ -1,4 +1,4 @@
-"""`View`: a frame, and the truth about it, with all of it that measures ask for more than once."""
+"""`View`: a frame and its truth, with the values that several measures need."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from svgf_cl.io.display import Linear, display
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A frame, and the truth about it: what its pictures are judged by.
+    """A frame and its truth, by which its pictures are judged.
 
     Parameters
     ----------
     frame : Frame
-        Of numpy arrays. What has to know a field that it lacks has no pixels to look at.
+        It has numpy arrays. If it lacks a field, the measures that need the field find no pixels.
     halves : two of (H, W, 3)
-        Independent halves of the truth, linear. Where it is known once, twice the same: then its noise counts.
+        Independent halves of the truth, linear. If there is only one estimate, it is given twice, and its noise counts.
     jitter : bool
-        Whether pixels of the truth are means over their areas, which the albedo of one ray is not.
+        Whether pixels of the truth are means over their areas; the albedo of one ray is not such a mean.
     earlier : Frame and two of (H, W, 3), optional
-        The frame before, and halves of the truth about it, if they are known.
+        The previous frame and the halves of its truth, if they are known.
     exposure : float, stops
-        Of all that is display-referred. What is linear stays as it is.
+        Exposure of all display-referred values; linear values stay as they are.
     """
 
     frame: Frame
@@ -43,7 +43,7 @@ class View:
 
     @cached_property
     def truth(self) -> Linear:
-        """The best there is, linear."""
+        """The best estimate of the truth: the mean of the halves, linear."""
         return 0.5 * (self.halves[0] + self.halves[1])
 
     @cached_property
@@ -63,7 +63,7 @@ class View:
 
     @cached_property
     def relit(self) -> Mask:
-        """Around which of the lit pixels nothing moved since the frame before but light."""
+        """The pixels of `lit` around which only the light has changed since the previous frame."""
         if self.earlier is None:
             return np.zeros(self.frame.shape, np.bool_)
         frame, halves = self.earlier
@@ -72,52 +72,52 @@ class View:
 
     @cached_property
     def past(self) -> Reprojection | None:
-        """Where surfaces were in the frame before, if that is known."""
+        """The positions of surfaces in the previous frame, if they are known."""
         return None if self.earlier is None else Reprojection.between(self.earlier[0], self.frame)
 
     @cached_property
     def resting(self) -> Mask:
-        """Where the surface is known not to have moved since the frame before."""
+        """The pixels whose surface is known not to have moved since the previous frame."""
         if self.past is None:
             return np.zeros(self.frame.shape, np.bool_)
         return self.past.found & (speed(self.frame) < STILL)
 
     @cached_property
     def textured(self) -> Mask:
-        """Around which pixels a window shows one surface that moves, is no lamp, and has a texture."""
+        """The pixels whose window shows one moving surface with a texture and no lamp."""
         return self.reflecting & moving_texture(self.frame, self._window)
 
     @cached_property
     def interior(self) -> Mask:
-        """Where no edge of geometry touches a pixel."""
+        """The pixels that no edge of geometry touches."""
         return interior(self.frame)
 
     @cached_property
     def thin(self) -> Mask:
-        """Where geometry is a few pixels thin."""
+        """The pixels of geometry that is a few pixels thin."""
         return thin(self.frame)
 
     @cached_property
     def plain(self) -> Mask:
-        """Around which pixels there is one surface of one colour."""
+        """The pixels whose window shows one surface of one colour."""
         return one_surface(self.frame)
 
     @cached_property
     def lit(self) -> Mask:
-        """Around which pixels a window shows one surface, and no lamp: contrast there is that of light.
+        """The pixels whose window shows one surface and no lamp, so that all contrast there comes from the light.
 
-        Where pixels of the truth are means, it shows one colour, too, as do the pixels around it: one ray does not tell
-        what else there is in its pixel.
+        With `jitter`, the window is one pixel larger and shows one colour, too, because one ray does not say what else
+        its pixel contains.
         """
         return self.reflecting & one_surface(self.frame, self._window, one_colour=self.jitter)
 
     @cached_property
     def reflecting(self) -> Mask:
-        """Where no lamp is seen."""
+        """The pixels that show no lamp and no sky."""
         return reflecting(self.frame)
 
     def light_in(self, picture: Linear) -> Plane:
-        """Luminance of a picture of this frame without albedo."""
+        """Return the luminance of a picture of this frame without albedo."""
         return without_albedo(picture, self.frame)
 
     @property

@@ -1,1 +1,1 @@
-"""Devices: finding them, building kernels for them, laying out and binding memory."""
+"""Finds OpenCL devices, builds kernels for them, and lays out and binds their memory."""

@@ -1,4 +1,4 @@
-"""Asks a question of a driver in a process of its own, which it may crash or hang."""
+"""Asks a driver a question in a separate process, as the driver may crash or hang."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from collections.abc import Mapping, Sequence
 
 TIMEOUT_SECONDS = 60
 
-# Starts the line that holds the answer, as drivers print on their own account, at exit too.
+# The answer's line starts with this, because drivers print lines of their own, even at exit.
 ANSWER = "svgf_cl is answered "
 
 
 class NoAnswerError(Exception):
-    """The question came to no end; the message says how."""
+    """The process gave no answer; the message says why."""
 
 
 def ask(command: Sequence[str], environment: Mapping[str, str]) -> str:
-    """Run a command that prints the line that `answer` makes, and return the answer.
+    """Run a command that prints the line made by `answer`, and return the answer.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def ask(command: Sequence[str], environment: Mapping[str, str]) -> str:
     Raises
     ------
     NoAnswerError
-        Where the process cannot be started, crashes, hangs or ends without an answer.
+        If the process cannot be started, crashes, hangs or ends without an answer.
     """
     try:
         child = subprocess.run(
@@ -53,12 +53,12 @@ def ask(command: Sequence[str], environment: Mapping[str, str]) -> str:
 
 
 def answer(text: str) -> str:
-    """Return the line that `ask` finds the answer in."""
+    """Return the line in which `ask` finds the answer."""
     return ANSWER + json.dumps(text)
 
 
 def summary(log: str) -> str:
-    """Return the line of a driver's message that says most: the first that names an error, else the last.
+    """Return the most useful line of a driver's message: the first that contains "error", else the last.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a `Denoiser` is made of, checked before anything is done with it."""
+"""Checks the arguments of `Denoiser` before it uses them."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from svgf_cl.filters.signals import Inputs
 from svgf_cl.frame import Shape
 from svgf_cl.io import cache
 
-# Is told the label and the event of every pass as soon as it is on the queue.
+# A function that gets the label and the event of every pass as soon as the pass is on the queue.
 AfterPass = Callable[[str, cl.Event], None]
 
 
 def check_filter(settings: Filter) -> Filter:
-    """Raise `SvgfError` for anything that is no filter's settings."""
+    """Return the settings; raise `SvgfError` if they are not a filter's settings."""
     if not isinstance(settings, Filter):
         kinds = " or ".join(f"{kind.__name__}(...)" for kind in FILTERS.values())
         raise SvgfError(f"Denoiser: expected settings={kinds}, got {shown(settings)}")
@@ -33,21 +33,27 @@ def check_filter(settings: Filter) -> Filter:
 
 
 def check_hook(after_pass: AfterPass | None) -> AfterPass | None:
-    """Raise `SvgfError` for anything that cannot be called."""
+    """Return the function or None; raise `SvgfError` for anything else."""
     if after_pass is not None and not callable(after_pass):
         raise SvgfError(f"Denoiser: expected after_pass=function(label, event), got {shown(after_pass)}")
     return after_pass
 
 
 def check_inputs(inputs: Inputs) -> Inputs:
-    """Raise `SvgfError` for anything that is no `Inputs`."""
+    """Return the inputs; raise `SvgfError` if they are not an `Inputs`."""
     if not isinstance(inputs, Inputs):
         raise SvgfError(f"Denoiser: expected Inputs(...) or Inputs.of(frame), got {shown(inputs)}")
     return inputs
 
 
 def check_queue(queue: cl.CommandQueue | None) -> cl.CommandQueue:
-    """A queue on the default device for None; `SvgfError` for one that may run the passes out of order, or is dead."""
+    """Return the queue, or for None a new one on the default device.
+
+    Raises
+    ------
+    SvgfError
+        If it is no queue, is dead, or may run the passes out of order.
+    """
     check_process()
     cache.tell()
     if queue is None:
@@ -61,7 +67,8 @@ def check_queue(queue: cl.CommandQueue | None) -> cl.CommandQueue:
         _ = queue.context.devices  # on Intel's runtime a queue does not keep its context alive
     except (cl.CommandQueueUsedAfterExit, cl.Error) as error:
         raise SvgfError(
-            f"Denoiser: expected a queue before the end of its 'with', whose Context is kept; got a dead one ({error})"
+            "Denoiser: expected a queue that is in use, before the end of its 'with' and with a Context that is kept "
+            f"alive; got a dead one ({error})"
         ) from error
     if queue.properties & cl.command_queue_properties.OUT_OF_ORDER_EXEC_MODE_ENABLE:
         raise SvgfError("Denoiser: expected an in-order queue, got one with OUT_OF_ORDER_EXEC_MODE_ENABLE")
@@ -69,12 +76,15 @@ def check_queue(queue: cl.CommandQueue | None) -> cl.CommandQueue:
 
 
 def held(queue: cl.CommandQueue) -> cl.CommandQueue:
-    """Another handle of a queue: its owner's is dead at the end of its ``with``, and drivers crash on a dead one."""
+    """Return a second handle of a queue.
+
+    The owner's handle is dead after its ``with`` block, and drivers crash on a dead one.
+    """
     return cl.CommandQueue.from_int_ptr(queue.int_ptr)
 
 
 def check_tuning(tuning: Tuning | None, device: cl.Device) -> Tuning:
-    """The best known for None; `SvgfError` for one that is not for this device."""
+    """Return the tuning, or for None the best known one; raise `SvgfError` if the device cannot use it."""
     if tuning is None:
         return best_tuning(device)
     if not isinstance(tuning, Tuning):
@@ -84,7 +94,7 @@ def check_tuning(tuning: Tuning | None, device: cl.Device) -> Tuning:
 
 
 def check_shape(shape: Shape) -> Shape:
-    """(height, width) as plain integers; `SvgfError` unless both are whole numbers of at least 1."""
+    """Return (height, width) as plain integers; raise `SvgfError` unless both are whole numbers of at least 1."""
     try:
         height, width = (operator.index(side) for side in shape if not isinstance(side, bool))
     except (TypeError, ValueError) as error:
@@ -95,7 +105,13 @@ def check_shape(shape: Shape) -> Shape:
 
 
 def layout_of(shape: Shape, tuning: Tuning, settings: Filter) -> Layout:
-    """The layout of an image; `SvgfError` where kernels' indices do not reach all of the filter's largest buffer."""
+    """Return the layout of an image.
+
+    Raises
+    ------
+    SvgfError
+        If the kernels' indices cannot reach every element of the filter's largest buffer.
+    """
     layout, planes = Layout(*shape, tuning.row_alignment), settings.pipeline(Inputs.every()).widest
     if not layout.indexable(planes):
         side = math.isqrt(2**31 // planes) // 1000 * 1000

@@ -1,4 +1,4 @@
-"""What an array of the user's must be: kernels can work in its memory, and the result overwrites no field."""
+"""Checks the user's arrays: that kernels can use their memory, and that the result overwrites no field."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from svgf_cl.frame import check_array, element_type, wrong
 
 
 def check_given(name: str, value: cl_array.Array, queue: cl.CommandQueue) -> None:
-    """Raise the error of `wrong` unless kernels on this queue can read or write all elements of a user's Array."""
+    """Raise the error of `wrong` unless kernels on this queue can read and write all elements of a user's Array."""
     wanted = np.dtype(element_type(name))
     if value.dtype != wanted:
         raise wrong(name, f"dtype {wanted}", f"dtype {value.dtype}")
@@ -35,26 +35,26 @@ def check_given(name: str, value: cl_array.Array, queue: cl.CommandQueue) -> Non
 
 
 def check_memory(name: str, memory: Any, queue: cl.CommandQueue) -> None:
-    """Raise the error of `wrong` unless kernels on this queue can work in the memory that an Array lies in."""
+    """Raise the error of `wrong` unless kernels on this queue can use the memory of an Array."""
     if isinstance(memory, cl.SVMPointer):
         check_svm(name, memory, queue.device)
     elif not isinstance(memory, cl.MemoryObjectHolder):
         raise wrong(name, "an Array in a buffer or memory pool", type(memory).__name__)
-    elif memory.get_info(cl.mem_info.CONTEXT) != queue.context:  # that of the Array's queue may be another
+    elif memory.get_info(cl.mem_info.CONTEXT) != queue.context:  # the Array's queue may have another context
         raise wrong(name, "an Array in a buffer of the context of Denoiser(queue=...)", "one of another context")
     elif isinstance(memory, gl_objects.GL_BUFFER):
         gl_objects.check_gl(name, queue.device)
 
 
 def check_apart(fields: Mapping[str, cl_array.Array], result: np.ndarray | cl_array.Array) -> None:
-    """Raise `ArgumentError` where the result would overwrite a field that neighbouring pixels still read.
+    """Raise `ArgumentError` if the result would overwrite a field that neighbouring pixels still read.
 
     Parameters
     ----------
     fields : mapping of str to Array
-        Those that the passes read where they lie.
+        The fields that the passes read in place.
     result : array
-        What the passes write where it lies.
+        The array that the passes write in place.
     """
     for name, value in fields.items():
         if are_joined(value, result):
@@ -62,8 +62,8 @@ def check_apart(fields: Mapping[str, cl_array.Array], result: np.ndarray | cl_ar
 
 
 def are_joined(field: cl_array.Array, result: np.ndarray | cl_array.Array) -> bool:
-    """Whether they may have an element's memory in common."""
-    if isinstance(result, np.ndarray):  # of which SVM may be a view
+    """Whether the two may share the memory of an element."""
+    if isinstance(result, np.ndarray):  # SVM may be a view of it
         return isinstance(field.base_data, cl.SVMPointer) and np.may_share_memory(field.base_data.buf, result)
     memory, first, last = place(field)
     other, begin, end = place(result)
@@ -71,13 +71,13 @@ def are_joined(field: cl_array.Array, result: np.ndarray | cl_array.Array) -> bo
 
 
 def place(array: cl_array.Array) -> tuple[int, int, int]:
-    """Where an Array lies: in which memory, its first byte there, and that behind its last.
+    """Return the number of the memory that an Array lies in, its first byte there, and the byte after its last.
 
-    The memory of a part of a buffer is that of the whole buffer.
+    A sub-buffer has the number of the whole buffer.
     """
     first, end = span(array)
     memory = array.base_data
-    if isinstance(memory, cl.SVMPointer):  # all of it is in one address space
+    if isinstance(memory, cl.SVMPointer):  # all SVM is in one address space
         return 0, memory.svm_ptr + first, memory.svm_ptr + end
     buffer = buffer_of(array)
     whole = cast("cl.Buffer | None", buffer.get_info(cl.mem_info.ASSOCIATED_MEMOBJECT)) or buffer

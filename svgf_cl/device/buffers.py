@@ -1,4 +1,4 @@
-"""Device memory of a denoiser: the planes that it owns."""
+"""`Buffers`: the device memory that a denoiser owns."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from svgf_cl.filters.pipeline import Buffer, Resource
 
 
 class Buffers:
-    """The memory of a pipeline by its buffers; all of it holds zeros at first.
+    """The memory of a pipeline, one `pyopencl.Buffer` for each of its buffers; at first it is all zeros.
 
     Parameters
     ----------
     queue : pyopencl.CommandQueue
     memory : Memory
     copies : bool
-        Whether there is to be room for `copy_aside`.
+        Whether to reserve memory for `copy_aside`.
 
     Attributes
     ----------
     turn : int
-        Which of `Memory.turns` the frame has.
+        The index into `Memory.turns` for this frame.
 
     Raises
     ------
     DeviceError
-        If the device has no room for all.
+        If the device does not have enough memory.
     """
 
     def __init__(self, queue: cl.CommandQueue, memory: Memory, *, copies: bool = False) -> None:
@@ -52,30 +52,30 @@ class Buffers:
         return self._pieces[self._planned.turns[self.turn][self._planned.slot_of[buffer]]]
 
     def begin_frame(self) -> None:
-        """Turn what was written in the last frame into history."""
+        """Make the values written in the last frame this frame's history."""
         self.turn = (self.turn + 1) % TURNS
 
     def forget(self, resources: Sequence[Resource]) -> None:
-        """Have the frame that has begun know nothing of the past."""
+        """Mark the history of these resources as unknown for the current frame."""
         for fill in self._planned.fills(resources):
             cl.enqueue_fill_buffer(self._queue, self[fill.buffer], fill.value, fill.offset, fill.nbytes)
 
     def inherit(self, other: Buffers, resources: Sequence[Resource]) -> None:
-        """Have the next frame find the past that it would find in `other`, which has these resources too."""
+        """Copy the history of these resources from `other`, which has them too, for the next frame."""
         for resource in resources:
             source, target = other[Buffer(resource)], self[Buffer(resource)]
             cl.enqueue_copy(self._queue, target, source, byte_count=self._planned.nbytes(resource))
 
     def copy_aside(self, buffer: Buffer) -> None:
-        """Have `read` find what a buffer holds now, though another takes its memory."""
+        """Copy a buffer as it is now, so that `read` can return it after another buffer takes its memory."""
         cl.enqueue_copy(self._queue, self._copies[buffer], self[buffer])
 
     def survives(self, buffer: Buffer) -> bool:
-        """Whether `read` finds what was written to a buffer in this frame."""
+        """Whether `read` returns the values that this frame wrote to a buffer."""
         return buffer in self._copies or self._planned.survives(buffer)
 
     def read(self, buffer: Buffer) -> np.ndarray:
-        """A copy of a whole buffer, flat float32."""
+        """Return a copy of a whole buffer, flat float32."""
         source = self._copies.get(buffer, self[buffer])
         result = np.empty(source.size // 4, np.float32)
         cl.enqueue_copy(self._queue, result, source)
@@ -83,6 +83,6 @@ class Buffers:
 
     def _zeros(self, nbytes: int, needed: int) -> cl.Buffer:
         buffer = allocate(self._queue, nbytes, needed)
-        with lack_of_room(self._queue.device, nbytes, needed):  # some drivers look for the room only now
+        with lack_of_room(self._queue.device, nbytes, needed):  # some drivers allocate only now
             cl.enqueue_fill_buffer(self._queue, buffer, np.float32(0), 0, nbytes)
         return buffer

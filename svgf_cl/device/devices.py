@@ -1,6 +1,6 @@
-"""Lists every OpenCL device with whether it works, and chooses the one to use.
+"""Lists all OpenCL devices, says which of them work, and chooses the one to use.
 
-A listed device is not a working device (see `svgf_cl.device.probe`), so only devices that passed the probe are chosen.
+Not every listed device works, so only devices that passed the probe (`svgf_cl.device.probe`) are chosen.
 """
 
 from __future__ import annotations
@@ -19,40 +19,41 @@ from svgf_cl.device.process import check_process
 from svgf_cl.errors import DeviceError, install_extra
 from svgf_cl.io import cache
 
-# Here, as `import svgf_cl` comes by: a loader looks once, when anyone in this process first lists the platforms.
+# When this module is imported, as `import svgf_cl` does: a loader reads the environment variables only once, when a
+# program first lists the platforms.
 driver_caches.do_without()
 registration.register()
 
-# By pyopencl's own name, so that it means the same in every program.
+# pyopencl's own variable, so that it means the same in every program.
 VARIABLE = "PYOPENCL_CTX"
 
 POCL = "Portable Computing Language"
 
-# A CPU is as fast as its driver's compiler. The order is that of docs/extending.md, fastest first;
-# compute units and clock say nothing here, as all drivers report the same silicon (and Intel's a clock of 0).
+# CPU drivers, fastest first, in the order of docs/extending.md. On a CPU the driver's compiler decides the speed:
+# all drivers report the same compute units, and Intel's reports a clock of 0.
 CPU_PLATFORMS = (INTEL.platform, POCL)
 
-# A simulator claims to be of every type; it finds bugs and is thousands of times slower than anything else.
+# This simulator reports all device types at once. It is for finding bugs, and thousands of times slower than a driver.
 SIMULATOR = "Oclgrind"
 
-# How to get one, by words that name it where it is there already.
+# How to install each driver. The key holds words that appear in the list of platforms if the driver is there already.
 INSTALLATION = {
     ("pocl", POCL.lower()): "Debian, Ubuntu:       apt-get install pocl-opencl-icd",
     ("intel",): f"x86-64 Linux, no root: {install_extra('cpu')}",
     ("gpu",): "a GPU:                its vendor's driver with OpenCL",
 }
 
-_lock = threading.Lock()  # threads that make their first queue at once shall share its context
+_lock = threading.Lock()  # so that threads that make their first queue at the same time share one context
 
 
 @dataclass(frozen=True)
 class DeviceReport:
-    """One device as its driver lists it, and whether it works.
+    """A device as its driver describes it, and whether it works.
 
     Attributes
     ----------
     selector : str
-        What names this device in ``PYOPENCL_CTX``: platform number, colon, device number.
+        The value of ``PYOPENCL_CTX`` that chooses this device: platform number, colon, device number.
     platform, version : str
         The OpenCL implementation.
     device, driver : str
@@ -60,11 +61,11 @@ class DeviceReport:
     kind : str
         ``GPU``, ``accelerator``, ``CPU``, ``simulator`` or ``other``.
     reason : str
-        Why it does not work; empty if it does.
+        Why the device does not work; empty if it works.
     is_default : bool
-        Whether `default_device` returns it.
+        Whether `default_device` returns this device.
     handle : pyopencl.Device, optional
-        The device itself; None where the driver could not list any.
+        The device itself; None if the driver could not list any.
     """
 
     selector: str
@@ -92,12 +93,12 @@ def list_devices(*, refresh: bool = False) -> list[DeviceReport]:
     Parameters
     ----------
     refresh : bool
-        Probe again the devices that are remembered as not working.
+        Probe the devices again that are cached as not working.
 
     Returns
     -------
     list of DeviceReport
-        At most one `is_default`; none is where `choose` raises.
+        At most one has `is_default` set; none has it if `choose` raises an error.
     """
     check_process()
     reports = _survey(refresh=refresh)
@@ -111,13 +112,14 @@ def list_devices(*, refresh: bool = False) -> list[DeviceReport]:
 def choose(reports: Sequence[DeviceReport]) -> DeviceReport:
     """Return the report on the device that ``PYOPENCL_CTX`` names, else on the fastest working one.
 
-    GPUs come before accelerators and these before CPUs; within a kind, discrete before integrated, then the most
-    compute units times clock. CPU drivers come in the order of `CPU_PLATFORMS`. The loader's order breaks ties.
+    The order is: GPUs, accelerators, CPUs. Among GPUs, and among accelerators, discrete devices come before integrated
+    ones, then the device with the most compute units times clock. CPU drivers come in the order of `CPU_PLATFORMS`.
+    The loader's order breaks ties.
 
     Parameters
     ----------
     reports : sequence of DeviceReport
-        All that `list_devices` returns.
+        The result of `list_devices`.
 
     Returns
     -------
@@ -150,7 +152,7 @@ def default_device() -> cl.Device:
     reports = _survey()
     try:
         if not any(report.works for report in _candidates(reports)):
-            # Drivers get repaired and permissions granted: doubt the memory before giving up.
+            # Somebody may have repaired a driver or granted a permission since: probe again before giving up.
             reports = _survey(refresh=True)
         chosen = choose(reports)
     except DeviceError as error:
@@ -175,7 +177,7 @@ def default_queue() -> cl.CommandQueue:
 
 
 def create_queue(device: cl.Device) -> cl.CommandQueue:
-    """Return a new queue, with profiling, on a device; all such queues of a device share one context.
+    """Return a new queue, with profiling, on a device. All queues made here for one device share one context.
 
     Parameters
     ----------
@@ -216,7 +218,7 @@ def _survey(*, refresh: bool = False) -> list[DeviceReport]:
 
 
 def _unusable_drivers() -> list[DeviceReport]:
-    """The drivers that the loader passes over; `DeviceError` where one of them would end this process."""
+    """Return reports on the drivers that the loader skips; raise `DeviceError` if one would crash this process."""
     try:
         return [_unlisted("-", name, fault) for name, fault in icd_files.faults()]
     except apart.NoAnswerError as error:
@@ -257,7 +259,7 @@ def _kind(device: cl.Device) -> str:
 
 
 def _candidates(reports: Sequence[DeviceReport]) -> list[DeviceReport]:
-    """Return the reports that `choose` may choose from: the one that the user names, else all."""
+    """Return the reports that `choose` may choose from: only the device that the user named, else all."""
     name = os.environ.get(VARIABLE)
     if name is None or not any(report.handle for report in reports):
         return list(reports)
@@ -281,7 +283,7 @@ def _rank(report: DeviceReport) -> tuple[int, int, bool, int]:
 
 
 def _what_to_do(reports: Sequence[DeviceReport]) -> str:
-    """The error where no device works: a driver that is there is to be repaired, else one is to be installed."""
+    """Return the error message if no device works: repair a driver that is there, or install one."""
     there = sorted({report.platform for report in reports})
     known = " ".join((*there, *(report.reason for report in reports))).lower()
     others = [how for words, how in INSTALLATION.items() if not any(word in known for word in words)]

@@ -1,4 +1,4 @@
-"""What pyopencl and drivers keep on their own account, where they cannot: they would fail, or wait for ever."""
+"""Turns off the caches of pyopencl and PoCL where their folders cannot be written: they would fail, or wait."""
 
 from __future__ import annotations
 
@@ -14,14 +14,15 @@ POCL_VARIABLE = "POCL_CACHE_DIR"
 
 
 def do_without() -> None:
-    """Have pyopencl use no cache, and PoCL one that lasts as long as this process, where theirs cannot be written.
+    """Turn off pyopencl's cache, and give PoCL a temporary one, if theirs cannot be written.
 
-    Takes effect only before the first listing of platforms in this process, as PoCL looks once.
+    PoCL's temporary cache lasts as long as this process. Call this before the first listing of platforms in this
+    process, as PoCL reads its variable only once.
     """
-    # It raises an error where it cannot make the folder, and waits a minute for a lock where it cannot make a file.
+    # pyopencl raises an error if it cannot make the folder. If it cannot make a file, it waits a minute for a lock.
     if not cl._PYOPENCL_NO_CACHE and not all(is_usable(users_folder(name)) for name in ("pyopencl", "pytools")):
         cl._PYOPENCL_NO_CACHE = True
-    # It compiles by way of files there, and lists no device where it cannot.
+    # PoCL compiles through files in its cache, and lists no device if it cannot write them.
     if not is_usable(Path(os.environ.get(POCL_VARIABLE) or users_folder("pocl"))):
         with contextlib.suppress(OSError):
             os.environ[POCL_VARIABLE] = str(temporary_folder() / "pocl")

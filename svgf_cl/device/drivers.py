@@ -1,4 +1,4 @@
-"""Drivers that are often installed without an ``.icd`` file that tells the OpenCL loader of them."""
+"""The drivers that are often installed without an ``.icd`` file, so that the OpenCL loader does not know of them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-# Where programs of 64 bits have their libraries, by Debian's and by Red Hat's rules.
+# The folders of 64-bit libraries on Debian and on Red Hat.
 SYSTEM_LIBRARIES = (Path(f"/usr/lib/{platform.machine()}-linux-gnu"), Path("/usr/lib64"))
 
 
@@ -21,18 +21,18 @@ class Driver:
     Parameters
     ----------
     name : str
-        Of the ``.icd`` file that is written for it.
+        The name of the ``.icd`` file that is written for the driver.
     platform : str
         The OpenCL platform's name.
     library : str
-        The library's file name, by which ``.icd`` files name it.
+        The library's file name, as ``.icd`` files write it.
     folders : callable
-        Gives the folders that the library may lie in, the most likely first.
+        Returns the folders that may contain the library, the most likely first.
     kernel : tuple of str
-        Files, of which one is there where the operating system's part of the driver is. The library is looked for only
-        there; a driver without such a part is looked for everywhere.
+        Files that show that the operating system's part of the driver is installed; one of them is enough. If none
+        exists, the library is not searched for. Empty for a driver that has no such part.
     remedy : str
-        How to get the library where only the operating system's part is there.
+        How to install the library if only the operating system's part is there.
     """
 
     name: str
@@ -44,11 +44,11 @@ class Driver:
 
     @property
     def kernel_part(self) -> str | None:
-        """The file that shows that the operating system's part is there; None where it is not."""
+        """The file that shows that the operating system's part is there; None if it is not."""
         return next((path for path in self.kernel if os.path.exists(path)), None)
 
     def find(self) -> str | None:
-        """Return the library's path, its name alone if only the dynamic linker knows where it is, or None if nobody.
+        """Return the library's path, or its bare name if only the dynamic linker finds it, or None if it is missing.
 
         Returns
         -------
@@ -56,14 +56,19 @@ class Driver:
         """
         if self.kernel and not self.kernel_part:
             return None
-        # Not `path.exists()`, which raises where a folder is another user's, as under sudo.
+        # Not `path.exists()`, which raises an error if a folder belongs to another user, as under sudo.
         found = next((path for path in map(self._in, self.folders()) if os.path.exists(path)), None)
         if found or not self.kernel:
             return found
         return ctypes.util.find_library(self.library.removeprefix("lib").partition(".so")[0])
 
     def why_missing(self) -> str:
-        """Return why the operating system's part is of no use; empty if it is not there, or the library is too."""
+        """Return why the operating system's part cannot be used; empty if it is not there, or the library is there too.
+
+        Returns
+        -------
+        str
+        """
         part = self.kernel_part
         if part is None or self.find():
             return ""
@@ -74,27 +79,27 @@ class Driver:
 
 
 def of_this_python() -> Iterator[Path]:
-    """Where pip puts libraries: in this environment, and in the user's own site."""
+    """Yield the folders where pip puts libraries: this environment, and the user's own site."""
     for scheme in (sysconfig.get_default_scheme(), sysconfig.get_preferred_scheme("user")):
         yield Path(sysconfig.get_path("data", scheme), "lib")
 
 
 def of_nvidia() -> Iterator[Path]:
-    """Where NVIDIA's libraries are: in a container, where its runtime has put them."""
+    """Yield the folders that may contain NVIDIA's libraries; in a container its runtime puts them there."""
     yield from (Path(folder).absolute() for folder in os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep) if folder)
     yield from (*SYSTEM_LIBRARIES, Path("/usr/local/nvidia/lib64"), Path("/run/opengl-driver/lib"))
 
 
 def of_rocm() -> Iterator[Path]:
-    """Where AMD's are: in ROCm's folders, the newest first, or where a distribution has them."""
+    """Yield the folders that may contain AMD's libraries: ROCm's, the newest first, then the distribution's."""
     for root in (Path("/opt/rocm"), *sorted(Path("/opt").glob("rocm-*"), reverse=True)):
         yield from (root / "lib", root / "opencl/lib")
     yield from SYSTEM_LIBRARIES
 
 
-# A whole CPU device that needs no root: pip install intel-opencl-rt intel-cmplr-lib-rt. The .icd file that it brings
-# holds a path of the machine that built the wheel. No library needs to be loaded beforehand: since 2025.0 the runtime
-# finds its neighbours by its own RUNPATH.
+# A CPU device that can be installed without root: pip install intel-opencl-rt intel-cmplr-lib-rt. The .icd file in the
+# wheel holds a path of the machine that built the wheel. Since 2025.0 the runtime finds its other libraries by its own
+# RUNPATH, so nothing needs to be loaded before it.
 INTEL = Driver("intel", "Intel(R) OpenCL", "libintelocl.so", of_this_python)
 
 # Containers get the driver's libraries from the host, but no .icd file.

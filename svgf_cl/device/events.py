@@ -1,23 +1,24 @@
-"""What must be complete before a frame's arrays may be read."""
+"""Collects the events that must complete before a frame's arrays may be read, and reads the times of events."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import pyopencl as cl
 import pyopencl.array as cl_array
 
+from svgf_cl.errors import SvgfError
 from svgf_cl.frame import wrong
 from svgf_cl.interchange import UserArray
 
 
 def pending(wait_for: Sequence[cl.Event], arrays: Mapping[str, UserArray], queue: cl.CommandQueue) -> list[cl.Event]:
-    """Those given, and those of device arrays that may still be being computed.
+    """Return the events of `wait_for`, and the events of device arrays that other queues may still be computing.
 
     Raises
     ------
     FrameError, ArgumentError
-        If one is no event of the queue's context, or its command has failed. Drivers would hang, or not tell.
+        If one is not an event of the queue's context, or its command has failed. Drivers would hang, or not report it.
     """
     try:
         events = [("wait_for", event) for event in wait_for]
@@ -30,9 +31,24 @@ def pending(wait_for: Sequence[cl.Event], arrays: Mapping[str, UserArray], queue
 
 
 def unfinished(value: UserArray, queue: cl.CommandQueue) -> Iterator[cl.Event]:
-    """Events of a device array on other queues; this one keeps its order."""
+    """Yield the events of a device array on other queues; this queue runs its commands in order anyway."""
     if isinstance(value, cl_array.Array):
         yield from (event for event in value.events if event.command_queue != queue)
+
+
+def times(queue: cl.CommandQueue, events: Iterable[tuple[str, cl.Event]]) -> Iterator[tuple[str, float]]:
+    """Yield the label and the milliseconds of each event, after all commands on the queue.
+
+    Raises
+    ------
+    SvgfError
+        If the queue does not profile.
+    """
+    if not queue.properties & cl.command_queue_properties.PROFILING_ENABLE:
+        raise SvgfError("profile(): the queue was made without PROFILING_ENABLE")
+    queue.finish()
+    for label, event in events:
+        yield label, 1e-6 * (event.profile.end - event.profile.start)
 
 
 def check_event(name: str, event: cl.Event, context: cl.Context) -> None:

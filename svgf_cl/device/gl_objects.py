@@ -1,4 +1,4 @@
-"""Arrays in buffers of OpenGL: which device can share them, and when OpenCL has them."""
+"""Arrays in OpenGL buffers: checks that a device can share them, and acquires and releases them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pyopencl.array as cl_array
 from svgf_cl.frame import wrong
 
 EXTENSION = "cl_khr_gl_sharing"
-# Packages of pyopencl from PyPI are built without OpenGL, and have no such class.
+# pyopencl's packages on PyPI are built without OpenGL and have no such class.
 GL_BUFFER: tuple[type[cl.MemoryObjectHolder], ...] = (cl.GLBuffer,) if cl.have_gl() else ()
 
 
@@ -23,7 +23,7 @@ def check_gl(name: str, device: cl.Device) -> None:
 
 
 def gl_objects(arrays: Iterable[cl_array.Array]) -> list[cl.MemoryObjectHolder]:
-    """The buffers of OpenGL that Arrays lie in, each once."""
+    """Return the OpenGL buffers that contain these Arrays, each once."""
     bases = (value.base_data for value in arrays)
     return list({base.int_ptr: base for base in bases if isinstance(base, GL_BUFFER)}.values())
 
@@ -32,15 +32,15 @@ def gl_objects(arrays: Iterable[cl_array.Array]) -> list[cl.MemoryObjectHolder]:
 def acquired(
     queue: cl.CommandQueue, objects: list[cl.MemoryObjectHolder], done: list[tuple[str, cl.Event]]
 ) -> Iterator[None]:
-    """Around commands that use buffers of OpenGL: it gets them back, after an error too.
+    """Acquire OpenGL buffers for the commands in a ``with`` block, and release them after it, even after an error.
 
     Parameters
     ----------
     queue : pyopencl.CommandQueue
     objects : list of pyopencl.GLBuffer
-        Nothing is done where there are none.
+        If it is empty, nothing happens.
     done : list of (str, pyopencl.Event)
-        Label and event of both commands are added to it.
+        Gets the label and the event of both commands.
     """
     if not objects:
         yield

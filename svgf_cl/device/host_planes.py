@@ -1,4 +1,4 @@
-"""Planes of a whole image in the host's memory, of which a part at a time is copied to the device and back."""
+"""Planes of a whole image in the host's memory; one part at a time is copied to the device and back."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ Corner = tuple[int, int]  # row, column
 
 
 class HostPlanes:
-    """What resources hold of every pixel of an image, without halo or padding.
+    """The values of resources at every pixel of an image, without halo or padding.
 
     Parameters
     ----------
     quantities : mapping of Resource to iterable of Quantity
-        Which quantities of which resources; these hold every pixel.
+        The quantities to keep of each resource. The resources must hold every pixel.
     shape : (int, int)
         (height, width) of the image.
     """
@@ -36,7 +36,7 @@ class HostPlanes:
 
     @property
     def resources(self) -> tuple[Resource, ...]:
-        """Of which it holds something."""
+        """The resources that have quantities here."""
         return tuple(self._planes)
 
     @property
@@ -45,24 +45,24 @@ class HostPlanes:
         return sum(planes.nbytes for kept in self._planes.values() for planes in kept.values())
 
     def forget(self) -> None:
-        """Have it know nothing of the past."""
+        """Mark all values as unknown."""
         for kept in self._planes.values():
             for quantity, planes in kept.items():
                 planes[...] = 0 if quantity.unknown is None else quantity.format.encoded(quantity.unknown)
 
     def holds(self, resource: Resource, quantity: Quantity) -> bool:
-        """Whether it holds a quantity of a resource."""
+        """Whether a quantity of a resource is kept here."""
         return quantity in self._planes.get(resource, ())
 
     def of(self, resource: Resource, quantity: Quantity) -> NDArray[Any]:
-        """What it holds of a quantity, (n, H, W), a copy."""
+        """Return a copy of a quantity's planes, (n, H, W)."""
         planes: NDArray[Any] = self._planes[resource][quantity].copy()
         return planes
 
     def upload(
         self, queue: cl.CommandQueue, resource: Resource, to: Place, corner: Corner, size: Shape
     ) -> list[cl.Event]:
-        """Put copies of the part of the image that begins at `corner` to a place on the device on the queue."""
+        """Queue copies from the part of the image that begins at `corner` to a place on the device."""
         copies = []
         for quantity, planes in self._planes[resource].items():
             where = rectangle(resource, quantity, planes, to, corner, size)
@@ -72,7 +72,7 @@ class HostPlanes:
     def download(
         self, queue: cl.CommandQueue, resource: Resource, source: Place, corner: Corner, size: Shape
     ) -> list[cl.Event]:
-        """Put copies of a place on the device to the part of the image that begins at `corner` on the queue."""
+        """Queue copies from a place on the device to the part of the image that begins at `corner`."""
         copies = []
         for quantity, planes in self._planes[resource].items():
             where = rectangle(resource, quantity, planes, source, corner, size)
@@ -82,13 +82,13 @@ class HostPlanes:
 
 @dataclass(frozen=True)
 class Place:
-    """A part of an image that lies on the device.
+    """A part of an image on the device.
 
     Parameters
     ----------
     memory : pyopencl.Buffer
     layout : Layout
-        Of the image in it.
+        The layout of the image in that buffer.
     corner : (int, int)
         Row and column of the part's first pixel in that image.
     """
@@ -101,7 +101,7 @@ class Place:
 def rectangle(
     resource: Resource, quantity: Quantity, planes: NDArray[Any], place: Place, corner: Corner, size: Shape
 ) -> dict[str, Any]:
-    """What pyopencl has to know to copy a part of every plane of a quantity; sizes along rows are in bytes."""
+    """Return pyopencl's arguments to copy a part of every plane of a quantity; sizes along rows are in bytes."""
     nbytes, layout = planes.itemsize, place.layout
     (count, height, width), (top, left) = planes.shape, place.corner
     return {

@@ -1,7 +1,7 @@
-"""The drivers that the OpenCL loader is told of by ``.icd`` files, and what is wrong with them.
+"""Finds what is wrong with the drivers that ``.icd`` files name.
 
-A loader passes over what it cannot load without a word. Here each driver is loaded as a loader does it, in a process of
-its own, which it may crash.
+An OpenCL loader skips a driver that it cannot load, and gives no message. This module loads each driver as a loader
+does, in a separate process, as the driver may crash.
 """
 
 from __future__ import annotations
@@ -17,26 +17,26 @@ VARIABLE = "OCL_ICD_VENDORS"
 
 
 def faults() -> list[tuple[str, str]]:
-    """What the loader cannot use, each by the file or variable that names it, and why.
+    """Return the drivers that the loader cannot use: for each the file or variable that names it, and the reason.
 
     Raises
     ------
     svgf_cl.device.apart.NoAnswerError
-        Where a driver crashes or hangs as it is loaded: this process would, too.
+        If a driver crashes or hangs when it is loaded: this process would crash or hang, too.
     """
     chosen = os.environ.get(VARIABLE)
     place = Path(chosen or SYSTEM_VENDORS)
     icds = [place] if place.suffix == ".icd" else sorted(place.glob("*.icd"))
     found = [(str(icd), fault_of_file(icd)) for icd in icds]
     if chosen and place.is_dir() and not icds:
-        found = [(f"{VARIABLE}={chosen}", f"holds no .icd file; unset it for those in {SYSTEM_VENDORS}")]
-    elif chosen and not icds:  # loaders take it for a driver's library
+        found = [(f"{VARIABLE}={chosen}", f"has no .icd file; unset it for those in {SYSTEM_VENDORS}")]
+    elif chosen and not icds:  # loaders treat such a value as a driver's library
         found = [(f"{VARIABLE}={chosen}", fault_of_library(chosen))]
     return [(name, fault) for name, fault in found if fault]
 
 
 def fault_of_file(icd: Path) -> str:
-    """Why the driver that an ``.icd`` file names cannot be used; empty if it can."""
+    """Return why the driver named by an ``.icd`` file cannot be used; empty if it can."""
     try:
         library = icd.read_text(errors="replace").strip()
     except OSError as error:
@@ -45,8 +45,8 @@ def fault_of_file(icd: Path) -> str:
 
 
 def fault_of_library(library: str) -> str:
-    """Why a driver cannot be used; empty if it can."""
-    # Python without what belongs to this environment starts ten times as fast.
+    """Return why a driver cannot be used; empty if it can."""
+    # Without the packages of this environment, Python starts ten times as fast.
     command = [sys.executable, "-I", "-S", load_driver.__file__, library, apart.ANSWER]
     try:
         reason = apart.ask(command, os.environ)

@@ -1,4 +1,4 @@
-"""A kernel launch that is made ready once, so that it costs the host next to nothing in every frame."""
+"""A kernel launch that is prepared once, so that it takes the host almost no time in each frame."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ Argument = np.ndarray | np.generic | cl.Buffer
 
 
 class Launch:
-    """A kernel that keeps its arguments, but for the user's arrays and the numbers that change with the frame.
+    """A kernel whose arguments are set once, except the user's arrays and the numbers that change with the frame.
 
     Parameters
     ----------
     entry : Pass
-        What is launched.
+        The pass to launch.
     kernel : pyopencl.Kernel
-        For this launch alone.
+        No other launch may use it.
     fixed : mapping of str to argument
-        What does not change from frame to frame, by the kernel's names; all others are given with every frame.
+        The arguments that do not change from frame to frame, by the kernel's names. All others come with every frame.
     work_items, work_group : (int, int)
-        Along a row and down.
+        Numbers along a row and down.
     """
 
     def __init__(
@@ -42,12 +42,12 @@ class Launch:
             kernel.set_arg(self._index[name], value)
 
     def set_scalars(self, entry: Pass) -> None:
-        """Take the numbers of a pass that is the same but for them."""
+        """Set the scalar arguments to those of `entry`, a pass that differs only in them."""
         for name, value in scalar_arguments(entry).items():
             self._kernel.set_arg(self._index[name], value)
 
     def enqueue(self, queue: cl.CommandQueue, user: Mapping[str, cl.Buffer], frame: Mapping[str, int]) -> cl.Event:
-        """Put the kernel on the queue, to work on these arrays of the user in this frame."""
+        """Put the kernel on the queue, with the user's arrays and the numbers of this frame."""
         for argument, name in self._user.items():
             self._kernel.set_arg(self._index[argument], user[name])
         for name in self.entry.per_frame:
@@ -56,5 +56,5 @@ class Launch:
 
 
 def scalar_arguments(entry: Pass) -> dict[str, np.generic]:
-    """A pass's numbers as kernels take them."""
+    """Return a pass's scalars in the types that kernels take."""
     return {name: np.int32(n) if isinstance(n, Integral) else np.float32(n) for name, n in entry.scalars.items()}

@@ -1,4 +1,4 @@
-"""The device's layout of an image: a stack of planes with a halo; kernels/layout.clh shows the same from inside."""
+"""The layout of an image on the device: a stack of planes with a halo. kernels/layout.clh is the kernels' side."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 
 HALO = 32  # pixels on every side: the reach of the widest a-trous level, 2 taps of step 16
 WIDEST_VECTOR = 16  # pixels: rows begin at a whole vector
-ROW_ALIGNMENT = 64  # pixels: the taps of the widest level, 16 rows apart, then lie at the same place of a page
-PAGE = 1024  # pixels of 4 KiB: were all rows that far apart, they would fight for the same few lines of a cache
+ROW_ALIGNMENT = 64  # pixels: then the taps of the widest level, 16 rows apart, lie at the same place in a page
+PAGE = 1024  # pixels, 4 KiB: if all rows were a multiple of this apart, they would compete for a few cache lines
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,8 @@ class Layout:
     ----------
     height, width : int, pixels, >= 1
     row_alignment : int, pixels
-        Rows are a multiple of it apart, but not of `PAGE`; a multiple of `WIDEST_VECTOR` itself, less than `PAGE`.
+        The distance between rows is a multiple of it, but not of `PAGE`. It is a multiple of `WIDEST_VECTOR`, and less
+        than `PAGE`.
     """
 
     height: int
@@ -34,7 +35,7 @@ class Layout:
         return aligned if aligned % PAGE else aligned + self.row_alignment
 
     def every(self, spacing: int) -> Layout:
-        """The layout of every so many pixels of every so many rows, from the first on."""
+        """Return the layout of an image that has one pixel in `spacing`, along both axes, from the first on."""
         return replace(self, height=-(-self.height // spacing), width=-(-self.width // spacing))
 
     @property
@@ -48,14 +49,14 @@ class Layout:
         return self.rows * self.pitch
 
     def vectors(self, width: int, step: int = 1) -> tuple[int, int]:
-        """How many vectors of so many pixels there are along a row, and how many rows.
+        """Return how many vectors of `width` pixels there are along a row, and how many rows.
 
-        Rows are rounded up to whole steps: atrous.cl goes through every `step`-th of them in turn.
+        The number of rows is rounded up to a multiple of `step`, because atrous.cl takes every `step`-th row in turn.
         """
         return -(-self.width // width), rounded_up(self.height, step)
 
     def indexable(self, planes: int) -> bool:
-        """Whether the kernels' 32-bit indices reach every element of a buffer of so many planes."""
+        """Whether the kernels' 32-bit indices reach every element of a buffer of `planes` planes."""
         return planes * self.plane < 2**31
 
     @property
@@ -64,15 +65,18 @@ class Layout:
         return np.array([self.width, self.height, self.pitch, self.plane], np.int32)
 
     def nbytes(self, depth: int) -> int:
-        """Bytes of a buffer of so many bits a pixel."""
+        """Bytes of a buffer that has `depth` bits a pixel."""
         return depth // 8 * self.plane
 
     def crop(self, planes: np.ndarray) -> np.ndarray:
-        """The image inside: (n * plane,) -> (n, height, width), a view; a part of a plane at the end is left out."""
+        """Return a view of the image without its halo: (n * plane,) -> (n, height, width).
+
+        An incomplete plane at the end is left out.
+        """
         stack = planes[: len(planes) // self.plane * self.plane].reshape(-1, self.rows, self.pitch)
         return stack[:, HALO : HALO + self.height, HALO : HALO + self.width]
 
 
 def rounded_up(length: int, unit: int) -> int:
-    """The least multiple of `unit` that is no less than `length`."""
+    """Return the least multiple of `unit` that is no less than `length`."""
     return -(-length // unit) * unit

@@ -1,6 +1,6 @@
 """Loads an OpenCL driver as a loader does: ``python load_driver.py LIBRARY PREFIX`` prints why it cannot be used.
 
-It stands alone, so that it starts quickly.
+It imports nothing of svgf_cl, so that it starts quickly.
 """
 
 from __future__ import annotations
@@ -9,12 +9,12 @@ import ctypes
 import json
 import sys
 
-# What a loader asks a driver for (cl_khr_icd).
+# The function that a loader asks a driver for (cl_khr_icd).
 LISTING = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_uint32, ctypes.c_void_p, ctypes.c_void_p)
 
 
 def fault(library: str) -> str:
-    """Why a driver cannot be used, to be read behind its name; empty if it lists a platform."""
+    """Return why a driver cannot be used, worded to follow its name; empty if it lists a platform."""
     try:
         find = ctypes.CDLL(library).clGetExtensionFunctionAddress
     except OSError as error:

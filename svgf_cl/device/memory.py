@@ -1,4 +1,4 @@
-"""`Memory`: how many bytes the slots of a memory plan take, who has which from frame to frame, and what marks a cut."""
+"""`Memory`: the bytes of a memory plan's slots, the buffers that have them in each frame, and the fills at a cut."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from svgf_cl.device.layout import Layout
 from svgf_cl.device.memory_plan import Slot
 from svgf_cl.filters.pipeline import Buffer, Resource, history_of
 
-TURNS = 2  # after so many frames the halves of every pair are where they were
+TURNS = 2  # after this many frames the halves of every pair are back in their place
 
 
 @dataclass(frozen=True)
 class Fill:
-    """A part of a buffer that says, at a cut, that nothing is known of the past.
+    """A part of a buffer to fill at a cut, which marks the history as unknown.
 
     Parameters
     ----------
     buffer : Buffer
     offset, nbytes : int, bytes
     value : () array
-        The element that it is filled with.
+        The element to fill it with.
     """
 
     buffer: Buffer
@@ -36,13 +36,13 @@ class Fill:
 
 @dataclass(frozen=True, eq=False)
 class Memory:
-    """The device memory of a pipeline, whatever the device; all of it holds zeros before the first frame.
+    """The memory that a pipeline needs on any device; it is all zeros before the first frame.
 
     Parameters
     ----------
     layout : Layout
     slots : sequence of Slot
-        As `svgf_cl.device.memory_plan.memory_slots` gives them.
+        The result of `svgf_cl.device.memory_plan.memory_slots`.
     """
 
     layout: Layout
@@ -50,19 +50,19 @@ class Memory:
 
     @cached_property
     def sizes(self) -> tuple[int, ...]:
-        """Bytes of every piece; there are as many as slots."""
+        """Bytes of every piece of memory; there is one piece for each slot."""
         return tuple(self.layout.every(slot.spacing).nbytes(slot.planes.depth) for slot in self.slots)
 
     @cached_property
     def slot_of(self) -> dict[Buffer, int]:
-        """Number of the slot of every buffer."""
+        """The number of each buffer's slot."""
         return {buffer: number for number, slot in enumerate(self.slots) for buffer in slot.buffers}
 
     @cached_property
     def turns(self) -> tuple[tuple[int, ...], ...]:
-        """Which piece each slot has, in frames 0, 2, 4... and in frames 1, 3, 5...
+        """The piece that each slot has, in frames 0, 2, 4... and in frames 1, 3, 5...
 
-        The halves of a pair change places: what one frame writes is what the next one finds.
+        The halves of a pair swap: the next frame reads what one frame writes.
         """
         odd = list(range(len(self.slots)))
         for buffer, before in self.slot_of.items():
@@ -72,11 +72,11 @@ class Memory:
         return tuple(range(len(self.slots))), tuple(odd)
 
     def pieces(self, buffer: Buffer) -> tuple[int, ...]:
-        """Number of the piece that a buffer has in each turn."""
+        """Return the number of the piece that a buffer has in each turn."""
         return tuple(turn[self.slot_of[buffer]] for turn in self.turns)
 
     def nbytes(self, resource: Resource) -> int:
-        """Bytes of a resource, which may be fewer than those of its slot."""
+        """Bytes of a resource; its slot may be larger."""
         return self.layout.every(resource.spacing).nbytes(resource.planes.depth)
 
     def survives(self, buffer: Buffer) -> bool:
@@ -84,7 +84,7 @@ class Memory:
         return self.slots[self.slot_of[buffer]].buffers[-1] == buffer
 
     def fills(self, resources: Sequence[Resource]) -> list[Fill]:
-        """What has a frame that has begun know nothing of the past of these resources."""
+        """Return the fills that mark the history of these resources as unknown for the current frame."""
         return [
             Fill(
                 history_of(resource),

@@ -1,7 +1,7 @@
-"""Which buffers share memory: one that is needed no more makes room for one that is yet to be written.
+"""Decides which buffers share memory: a buffer that is no longer needed gives its memory to a later one.
 
-A plane's halo stays zero whoever has the memory, as every pass writes the same pixels: the image, rounded up to whole
-vectors. That holds among planes of one width only, so a buffer in 32 bits and one in 16 never share.
+A plane's halo stays zero when buffers share memory, because every pass writes the same pixels: the image, rounded up to
+whole vectors. That is true only among planes of one width, so a 32-bit buffer and a 16-bit one never share.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from svgf_cl.filters.pipeline import Access, Buffer, Life, Pipeline
 
 @dataclass
 class Slot:
-    """Memory for one buffer after another.
+    """Memory that several buffers use, one after another.
 
     Parameters
     ----------
     buffers : list of Buffer
-        Which have it in the course of a frame.
+        The buffers that use it during a frame, in order.
     planes : Planes
         Room for the largest of them.
     last : int
-        Number of the pass after which the last of them is needed no more.
+        Number of the last pass that needs the last of them.
     """
 
     buffers: list[Buffer]
@@ -32,28 +32,28 @@ class Slot:
 
     @property
     def spacing(self) -> int:
-        """Of its buffers' pixels, the same for all."""
+        """The spacing of the buffers' pixels, the same for all of them."""
         return self.buffers[0].resource.spacing
 
     def takes(self, buffer: Buffer, first: int) -> bool:
-        """Whether a buffer that pass number `first` begins to write may come next."""
+        """Whether a buffer that is first written by pass number `first` may use this memory next."""
         if self.spacing != buffer.resource.spacing:
             return False
         in_place = self.last == first and self.buffers[-1].resource.name == buffer.resource.over
         return (self.last < first or in_place) and not self.planes.over(buffer.resource.planes).is_mixed
 
     def holds(self, buffer: Buffer) -> bool:
-        """Whether there is room for a buffer already, at its pixels and its width."""
+        """Whether a buffer fits without growth: the same spacing, and planes of the same width."""
         return self.spacing == buffer.resource.spacing and self.planes.over(buffer.resource.planes) == self.planes
 
     def growth(self, planes: Planes) -> int:
-        """Bits of a pixel that making room for these planes takes; a pair's other half grows as well."""
+        """Return by how many bits a pixel the slot must grow for these planes; a pair's other half grows as well."""
         more = self.planes.over(planes).depth - self.planes.depth
         return 2 * more if self.buffers[0].previous else more
 
 
 def memory_slots(pipeline: Pipeline) -> list[Slot]:
-    """The memory that a pipeline needs; the buffers of a slot have it one after another, in their order."""
+    """Return the memory that a pipeline needs; the buffers of a slot use it one after another, in their order."""
     last_use = {
         each.of: number for number, entry in enumerate(pipeline.passes) for each in entry.accesses if is_own(each)
     }
@@ -62,7 +62,7 @@ def memory_slots(pipeline: Pipeline) -> list[Slot]:
     pairs = [resource for resource in pipeline.lasting if resource.life is Life.PAIR]
     slots = [Slot([buffer], buffer.resource.planes, always) for buffer in lasting]
     before = [Buffer(resource, previous=True) for resource in pairs]
-    # What tells where nothing is known tells it in the halo too, where others need zeros: it shares with none.
+    # A buffer that marks unknown pixels marks the halo too, where other buffers need zeros: so it shares with none.
     slots += [
         Slot([buffer], buffer.resource.planes, always if buffer.resource.tells_unknown else last_use[buffer])
         for buffer in before
@@ -73,25 +73,25 @@ def memory_slots(pipeline: Pipeline) -> list[Slot]:
         for each in entry.writes:
             if isinstance(each.of, Buffer) and each.of not in placed:
                 slot = under.get(each.of.resource.name)
-                if slot and slot.holds(each.of):  # it is of no use to the pair before
+                if slot and slot.holds(each.of):  # the pair does not need this memory before that
                     slot.buffers.insert(0, each.of)
                 else:
                     place(each.of, first, last_use[each.of], slots)
                 placed.add(each.of)
     of = {buffer: slot for slot in slots for buffer in slot.buffers}
-    for resource in pairs:  # the halves change places every frame
+    for resource in pairs:  # the halves swap every frame
         halves = of[Buffer(resource)], of[Buffer(resource, previous=True)]
         halves[0].planes = halves[1].planes = halves[0].planes.over(halves[1].planes)
     return slots
 
 
 def is_own(access: Access) -> bool:
-    """Whether it is to a buffer of the denoiser's, not to an array of the user's."""
+    """Whether a pass accesses a buffer of the denoiser, not an array of the user."""
     return isinstance(access.of, Buffer)
 
 
 def place(buffer: Buffer, first: int, last: int, slots: list[Slot]) -> None:
-    """Give a buffer the slot that grows least for it; of several the one used last, which a cache may still hold."""
+    """Give a buffer the slot that grows least; if several do, the one used last, which may still be in a cache."""
     planes = buffer.resource.planes
     free = [slot for slot in slots if slot.takes(buffer, first)]
     best = min(free, key=lambda slot: (slot.growth(planes), -slot.last), default=None)

@@ -1,4 +1,4 @@
-"""What goes wrong on a device, as errors that say what to do next."""
+"""Turns OpenCL's errors into errors that say what to do next."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pyopencl as cl
 
 from svgf_cl.errors import DeviceError
 
-# How drivers say that there is no room: a buffer larger than any may be is an invalid one.
+# The errors with which drivers report too little memory. For a buffer above the size limit it is INVALID_BUFFER_SIZE.
 LACK_OF_ROOM = (
     cl.status_code.MEM_OBJECT_ALLOCATION_FAILURE,
     cl.status_code.OUT_OF_RESOURCES,
@@ -20,7 +20,7 @@ LACK_OF_ROOM = (
 
 @contextmanager
 def opencl_errors(device: cl.Device, what: str, then: str) -> Iterator[None]:
-    """Have an OpenCL error come out as a `DeviceError`: what it means for the caller, and what to do then."""
+    """Turn an OpenCL error into a `DeviceError` that begins with `what` and ends with `then`, the advice."""
     try:
         yield
     except cl.Error as error:
@@ -29,7 +29,7 @@ def opencl_errors(device: cl.Device, what: str, then: str) -> Iterator[None]:
 
 @contextmanager
 def lack_of_room(device: cl.Device, nbytes: int, needed: int) -> Iterator[None]:
-    """Have an OpenCL error that says that a device has no room say how much was needed."""
+    """Turn an OpenCL error that reports too little memory into a `DeviceError` that says how much was needed."""
     try:
         yield
     except cl.Error as error:
@@ -39,33 +39,33 @@ def lack_of_room(device: cl.Device, nbytes: int, needed: int) -> Iterator[None]:
 
 
 def allocate(queue: cl.CommandQueue, nbytes: int, needed: int) -> cl.Buffer:
-    """A buffer of uninitialised memory.
+    """Allocate a buffer of uninitialised memory.
 
     Parameters
     ----------
     queue : pyopencl.CommandQueue
     nbytes : int
-        Its size.
+        Size of the buffer.
     needed : int
-        Bytes of all buffers that are of no use without each other, for the error.
+        Bytes of all buffers that are needed together, for the error message.
 
     Raises
     ------
     DeviceError
-        If the device has no room.
+        If the device does not have enough memory.
     """
     with lack_of_room(queue.device, nbytes, needed):
         return cl.Buffer(queue.context, cl.mem_flags.READ_WRITE, nbytes)
 
 
 def check_room(device: cl.Device, needed: int) -> None:
-    """Raise `DeviceError` where a device has less memory than needed: drivers may find out only in use, or never."""
+    """Raise `DeviceError` if a device has less memory than needed: drivers may notice late, or never."""
     if needed > device.global_mem_size:
         raise no_room(device, needed, needed)
 
 
 def no_room(device: cl.Device, nbytes: int, needed: int) -> DeviceError:
-    """The error that says how much was needed, and how much there is."""
+    """Return the error that says how much memory was needed, and how much there is."""
     return DeviceError(
         f"{device.name} has no room for a buffer of {mebibytes(nbytes)}, of {mebibytes(needed)} needed in all; it has "
         f"{mebibytes(device.global_mem_size)}, {mebibytes(device.max_mem_alloc_size)} for one buffer, less what is in "

@@ -1,4 +1,4 @@
-"""Which parts of the previous frame a tile reads along motion, cut into windows that fit into a buffer."""
+"""Finds the parts of the previous frame that a tile reads along motion, cut into windows of a buffer's size."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from svgf_cl.frame import Shape
 
 Motion = NDArray[np.float32]
 Corner = tuple[int, int]  # row, column
-FAR = 1e6  # pixels: motion out of every image, as in kernels/reprojection.clh
+FAR = 1e6  # pixels: such motion leads out of every image, as in kernels/reprojection.clh
 
 
 @dataclass(frozen=True)
 class Reach:
-    """How far a pass reads to either side of the whole pixel at or above and left of p + motion, in pixels."""
+    """How far a pass reads, in pixels, to either side of p + motion rounded down to a whole pixel."""
 
     below: int
     above: int
-    beside: int  # from a pixel to that whose motion it goes by
+    beside: int  # from a pixel to the one whose motion it uses
 
     @classmethod
     def of(cls, entry: Pass) -> Reach:
-        """That of a pass's taps along motion, whichever pixel beside it takes the motion from."""
+        """Return the reach of a pass's taps along motion, whichever neighbour's motion a pixel uses."""
         taps = [tap for each in entry.reads for tap in entry.taps(each) if tap.follow_motion]
         along = [distance for tap in taps for offset in tap.offsets for distance in offset]
         beside = max(entry.reach(each) for each in entry.reads if each.of == "motion")
@@ -33,7 +33,7 @@ class Reach:
 
     @property
     def span(self) -> int:
-        """Pixels beyond the first that are read along an axis."""
+        """Number of pixels read along an axis, less one."""
         return self.below + self.above
 
 
@@ -44,11 +44,11 @@ class PastWindow:
     Parameters
     ----------
     origin : (int, int)
-        Row and column of the image where it begins; it lies inside the image.
+        Row and column of the image where the window begins; the window lies inside the image.
     corner, size : (int, int)
-        The part of the image that is read in it: its first row and column, its height and width.
+        The part of the window that is read: first row and column in the image, height and width.
     readers : (h, w) bool, optional
-        The pixels whose motion leads there; None where that of all does that leads into the image.
+        The pixels whose motion leads into this window; None for all pixels whose motion leads into the image.
     """
 
     origin: Corner
@@ -58,15 +58,14 @@ class PastWindow:
 
 
 def past_windows(motion: Motion, first: Corner, shape: Shape, window: Shape, reach: Reach) -> list[PastWindow]:
-    """Windows of which every pixel's motion leads into one, with all the taps there that lie inside the image.
+    """Return windows such that each pixel finds all its taps inside the image in one of them.
 
-    One will do where motion is much the same all over. Motion that leads anywhere takes as many as the image has room
-    for.
+    One window is enough if motion is similar everywhere. Arbitrary motion takes as many windows as cover the image.
 
     Parameters
     ----------
     motion : (h, w, 2 or 3) float32
-        Of pixels that lie together.
+        The motion of a rectangle of pixels.
     first : (int, int)
         Row and column of the first of them.
     shape, window : (int, int)
@@ -81,7 +80,7 @@ def past_windows(motion: Motion, first: Corner, shape: Shape, window: Shape, rea
 
     least, greatest = ends(motion, first, reach)
     corner, end = np.clip(least, 0, sides - 1), np.clip(greatest, 0, sides - 1) + 1
-    if np.all(end - corner <= most):  # by the extremes of motion alone, which takes a fraction of the time
+    if np.all(end - corner <= most):  # the extremes of motion are enough here, and much faster
         return [placed(corner, end, None)]
 
     low, high, used = taps_of(motion, first, shape, reach)
@@ -100,12 +99,12 @@ def past_windows(motion: Motion, first: Corner, shape: Shape, window: Shape, rea
 
 
 def pair(values: NDArray[np.int64]) -> tuple[int, int]:
-    """Two whole numbers."""
+    """Return two values as Python integers."""
     return int(values[0]), int(values[1])
 
 
 def ends(motion: Motion, first: Corner, reach: Reach) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """The first and the last row and column that these pixels may read, if each had the least and greatest motion."""
+    """Return the first and the last row and column that these pixels can read, by their least and greatest motion."""
     along = motion[..., 1], motion[..., 0]
     whole = (
         known(np.array([each.min() for each in along]), unknown=-FAR),
@@ -118,7 +117,7 @@ def ends(motion: Motion, first: Corner, reach: Reach) -> tuple[NDArray[np.int64]
 def taps_of(
     motion: Motion, first: Corner, shape: Shape, reach: Reach
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_]]:
-    """The first and the last row and column that each pixel reads in the image, and whether it reads there at all."""
+    """Return the first and the last row and column that each pixel reads in the image, and whether it reads any."""
     sides = np.array(shape)
     place = np.moveaxis(np.indices(motion.shape[:2]), 0, -1) + first + known(motion[..., 1::-1])
     low, high = place - reach.below, place + reach.above
@@ -127,5 +126,5 @@ def taps_of(
 
 
 def known(motion: NDArray[np.float32], unknown: float = FAR) -> NDArray[np.int64]:
-    """Motion in whole pixels, rounded down; what is no number leads out of every image."""
+    """Return motion in whole pixels, rounded down; NaN becomes `unknown`."""
     return np.floor(np.clip(np.nan_to_num(motion, nan=unknown), -FAR, FAR)).astype(np.int64)

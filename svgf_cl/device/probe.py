@@ -1,8 +1,8 @@
 """Finds out whether a listed OpenCL device works, by building and running a tiny kernel on it.
 
-A broken driver may crash or hang, so the kernel runs in a process of its own. That takes a fraction of a second; the
-answer is remembered in the cache directory, under everything that may change it. A crash or a hang is no answer: the
-machine may have been busy, so it is remembered only as long as this process lives.
+A broken driver may crash or hang, so the kernel runs in a separate process. That takes a fraction of a second. The
+answer is kept in the cache directory; its key contains everything that may change the answer. A crash or a hang is kept
+only as long as this process lives, as the machine may have been busy.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from svgf_cl.device.programs import OPTIONS
 from svgf_cl.io.atomic import read_json, write_text
 from svgf_cl.io.cache import cache_folder, device_key, keeping
 
-# Part of the key under which answers are remembered: raise it whenever the probe asks for more.
+# Part of the key of cached answers: increase it whenever the probe checks more.
 VERSION = 1
 STORE = "probes.json"
 
@@ -34,18 +34,18 @@ kernel void probe(global const float4 *in, global float4 *out, const float scale
 """
 
 
-_heard: dict[str, str] = {}  # by this process: an answer that cannot be kept counts, and so does none
+_heard: dict[str, str] = {}  # answers in this process, also crashes and those that cannot be written to the cache
 
 
 def reason(device: cl.Device, *, refresh: bool = False) -> str:
-    """Return why a device does not work, in one line; an empty string if it works.
+    """Return why a device does not work, in one line; empty if it works.
 
     Parameters
     ----------
     device : pyopencl.Device
         Any listed device.
     refresh : bool
-        Doubt the remembered answer if it is that the device does not work.
+        Probe again if the cached answer says that the device does not work.
 
     Returns
     -------
@@ -59,7 +59,7 @@ def reason(device: cl.Device, *, refresh: bool = False) -> str:
 
 
 def key(device: cl.Device) -> str:
-    """Return what identifies a device together with its driver and this probe; equal devices share it.
+    """Return the key of a device, its driver and this probe; equal devices have the same key.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def key(device: cl.Device) -> str:
 
 
 def run(device: cl.Device) -> str:
-    """Probe a device in this process; the result is that of `reason`.
+    """Probe a device in this process; the result is like that of `reason`.
 
     Parameters
     ----------
@@ -112,10 +112,10 @@ def _ask(name: str) -> str:
 
 def _run_apart(wanted: str) -> str:
     environment = os.environ | {
-        # The modules of this process, and none that happen to lie in the current folder.
+        # Use the modules of this process, and none that happen to lie in the current folder.
         "PYTHONPATH": os.pathsep.join(path or os.curdir for path in sys.path),
         "PYTHONSAFEPATH": "1",
-        # No answer from pyopencl's binary cache: the compiler is what is on trial.
+        # Do not use pyopencl's cache of binaries: the probe is to test the compiler.
         "PYOPENCL_NO_CACHE": "1",
     }
     return apart.ask([sys.executable, "-W", "ignore", "-m", "svgf_cl.device.probe", wanted], environment)
@@ -123,7 +123,7 @@ def _run_apart(wanted: str) -> str:
 
 def _listed() -> Iterator[cl.Device]:
     for platform in cl.get_platforms():
-        with contextlib.suppress(cl.Error):  # svgf_cl.device.devices says so; the wanted device is another platform's
+        with contextlib.suppress(cl.Error):  # svgf_cl.device.devices reports it
             yield from platform.get_devices()
 
 
@@ -131,7 +131,7 @@ def _recall() -> dict[str, str]:
     try:
         known = read_json(cache_folder() / STORE)
     except (OSError, ValueError):
-        return {}  # never asked before, unreadable, or damaged: ask the device
+        return {}  # no such file, unreadable or damaged: probe the device
     entries = known.items() if isinstance(known, dict) else ()
     return {name: answer for name, answer in entries if isinstance(answer, str)}
 
@@ -144,7 +144,7 @@ def _remember(answers: dict[str, str]) -> None:
 def _main(wanted: str) -> None:
     device = next((device for device in _listed() if key(device) == wanted), None)
     if device is None:
-        sys.exit("the loader does not list the device in a process of its own")
+        sys.exit("the loader does not list the device in a separate process")
     print(f"\n{apart.answer(run(device))}", flush=True)
 
 

@@ -1,4 +1,4 @@
-"""OpenCL does not survive a fork: drivers' threads are gone, and calls hang. A forked process is told so at once."""
+"""Detects a forked process: drivers' threads do not survive a fork, so that OpenCL calls there would hang."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def is_forked() -> bool:
 
 
 def check_process() -> None:
-    """Raise `DeviceError` in a process that was forked from one that had used OpenCL; else note that this one does."""
+    """Raise `DeviceError` if this process was forked from one that had used OpenCL; else note that this one uses it."""
     if not _first_user:
         _first_user.append(os.getpid())
     if is_forked():

@@ -1,8 +1,8 @@
 """Builds the kernels of one source file for one device, with its compile-time constants, and keeps the result.
 
-A source is ``kernels/<name>.cl``. The shared headers are put in front of it here, on the host: ``#include`` does not
-work on remote and offline devices. ``#line`` keeps the names and line numbers of build logs those of the files.
-Across processes the driver's own cache (PoCL, NVIDIA) or pyopencl's remembers the binaries.
+A source is ``kernels/<name>.cl``. The shared headers are put in front of it here, on the host, because ``#include``
+does not work on remote and offline devices. ``#line`` makes build logs show each file's name and line numbers.
+Across processes, the cache of the driver (PoCL, NVIDIA) or of pyopencl keeps the binaries.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ HEADERS = (
     "interleaved.clh",
     "surface.clh",
 )
-# What only some sources need: another would be compiled again for macros that it has no use for.
+# Headers that only some sources need. In the others, their macros would cause needless compilations.
 MORE_HEADERS: Mapping[str, tuple[str, ...]] = {
     "temporal": ("motion.clh", "reprojection.clh"),
     "atrous": ("noise.clh",),
@@ -47,20 +47,21 @@ MORE_HEADERS: Mapping[str, tuple[str, ...]] = {
     "change": ("innovation.clh", "significance.clh"),
     "update": ("innovation.clh", "significance.clh"),
 }
-# What works on memory as such, of no layout and vector width.
+# Sources that depend neither on the layout nor on the vector width.
 WITHOUT_HEADERS = ("strided_copy",)
 
-# No fast-math: it would allow the compiler to drop the guards against NaN and infinity. Weights too small to count are
-# denormal numbers, and slow: without them an a-trous level takes a seventh less time on traced frames.
+# No fast-math: it would allow the compiler to drop the guards against NaN and infinity. Denormal numbers are slow, and
+# only weights too small to matter are denormal: without them an a-trous level takes a seventh less time on traced
+# frames.
 OPTIONS = ("-cl-std=CL1.2", "-cl-mad-enable", "-cl-denorms-are-zero", "-w")
 
-# Where pyopencl's own cache of binaries is damaged it looks this up, to warn and build from source if it is empty; it
-# does not occur to it that it may not be set.
+# If pyopencl's cache of binaries is damaged, pyopencl reads this variable. If it is empty, pyopencl warns and builds
+# from source; if it is not set, pyopencl fails.
 os.environ.setdefault("PYOPENCL_CACHE_FAILURE_FATAL", "")
 
 Define = int | float | str
 
-# What kernels and host must agree on, whatever the filter.
+# Constants that kernels and host share, the same for all filters.
 CONSTANTS: Mapping[str, Define] = {
     "HALO": HALO,
     "FLOAT16_MAX": HALF_MAX,
@@ -81,7 +82,7 @@ def names() -> list[str]:
 
 @functools.cache
 def source(name: str) -> str:
-    """Return what is compiled for a source file: the headers, then the file itself."""
+    """Return the text that is compiled for a source file: the headers, then the file itself."""
     kernels = resources.files("svgf_cl.kernels")
     headers = () if name in WITHOUT_HEADERS else (*HEADERS, *MORE_HEADERS.get(name, ()))
     files = (*headers, f"{name}.cl")
@@ -89,7 +90,7 @@ def source(name: str) -> str:
 
 
 def options(defines: Mapping[str, Define]) -> tuple[str, ...]:
-    """Return the compiler's options for a set of macros, in an order that does not depend on the mapping's."""
+    """Return the compiler's options for a set of macros, sorted by name."""
     return OPTIONS + tuple(f"-D{name}={_literal(value)}" for name, value in sorted(defines.items()))
 
 
@@ -98,17 +99,18 @@ def build(context: cl.Context, device: cl.Device, name: str, defines: Mapping[st
 
     Parameters
     ----------
-    context, device
-        What to build for; the device is one of the context's.
-    name
+    context : pyopencl.Context
+    device : pyopencl.Device
+        One of the context's devices.
+    name : str
         A file in ``kernels/``, without its suffix.
-    defines
-        Macros. A float becomes a single precision literal, a string is passed as it is.
+    defines : mapping of str to number or str
+        Macros. A float becomes a single precision literal; a string is passed as it is.
 
     Raises
     ------
     DeviceError
-        The device's compiler refused the source. The message holds device, driver, file, options and the log.
+        If the source does not compile. The message has the device, the driver, the file, the options and the log.
     """
     with _lock:
         return _build(context, device, name, options_of(name, defines))
@@ -120,20 +122,20 @@ def options_of(name: str, defines: Mapping[str, Define]) -> tuple[str, ...]:
 
 
 def macros(name: str, defines: Mapping[str, Define]) -> dict[str, str]:
-    """Return the text of each macro of a source file: `CONSTANTS` and these, as far as it mentions them."""
+    """Return the text of each macro of a source file: those of `CONSTANTS` and `defines` that the file mentions."""
     return {macro: _literal(value) for macro, value in mentioned(name, {**CONSTANTS, **defines}).items()}
 
 
 @functools.lru_cache(maxsize=64)
 def words(text: str) -> frozenset[str]:
-    """Return the words of a source's code, comments aside."""
+    """Return the words of a source's code, without its comments."""
     return frozenset(re.findall(r"\w+", re.sub(r"//.*", "", text)))
 
 
 def mentioned(name: str, defines: Mapping[str, Define]) -> dict[str, Define]:
-    """Return the macros that a source file mentions; any other would only have it compiled again.
+    """Return the macros that a source file mentions; any other would only cause another compilation.
 
-    The channels of a quantity are mentioned where it is: the kernels' `PLANE` puts the two names together.
+    A macro ``X_CHANNELS`` counts as mentioned if ``X`` is, because the kernels' `PLANE` builds its name from ``X``.
     """
     known = words(source(name))
     return {macro: value for macro, value in defines.items() if macro.removesuffix("_CHANNELS") in known}
@@ -143,7 +145,7 @@ def mentioned(name: str, defines: Mapping[str, Define]) -> dict[str, Define]:
 def _build(context: cl.Context, device: cl.Device, name: str, flags: tuple[str, ...]) -> cl.Program:
     try:
         with warnings.catch_warnings():
-            # Drivers report success in their log. Whoever wants to read it sets pyopencl's own variable.
+            # Drivers write to their log even on success. pyopencl's own variable shows it.
             if not os.environ.get("PYOPENCL_COMPILER_OUTPUT"):
                 warnings.simplefilter("ignore", cl.CompilerWarning)
             program: cl.Program = cl.Program(context, source(name)).build(options=list(flags), devices=[device])
@@ -159,7 +161,7 @@ def _build(context: cl.Context, device: cl.Device, name: str, flags: tuple[str, 
 
 
 def _log(message: str) -> str:
-    # pyopencl wraps the compiler's log in its own account of devices and options; without either, all of it is shown.
+    # pyopencl puts devices and options around the compiler's log; a message without them is shown whole.
     log = message.partition(">:\n\n")[2] or message
     return log.partition("\n(options: ")[0].strip()
 
@@ -167,7 +169,7 @@ def _log(message: str) -> str:
 def _literal(value: Define) -> str:
     if isinstance(value, str):
         if not value or any(character.isspace() for character in value):
-            raise ValueError(f"a macro's text must not be empty or hold spaces, got {value!r}")
+            raise ValueError(f"a macro's text must not be empty or contain spaces, got {value!r}")
         return value
     if isinstance(value, numbers.Integral):  # NumPy's integers too
         return str(int(value))

@@ -1,8 +1,8 @@
-"""Makes installed drivers visible to the OpenCL loader that no ``.icd`` file of the system names.
+"""Tells the OpenCL loader of installed drivers that no ``.icd`` file of the system names.
 
-A loader takes one directory of ``.icd`` files from ``OCL_ICD_VENDORS``, in place of the system's, when it first lists
-the platforms. So `register` writes a directory with ``.icd`` files of those drivers beside links to the system's, and
-names it there.
+``OCL_ICD_VENDORS`` names a directory of ``.icd`` files that the loader reads in place of the system's, when it first
+lists the platforms. `register` writes such a directory, with ``.icd`` files of these drivers and links to the system's
+files, and sets the variable.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ Libraries = Mapping[str, str]  # by the driver's name
 
 
 def register() -> None:
-    """Point the OpenCL loader at drivers that the system does not tell it of, where nobody has pointed it elsewhere.
+    """Tell the OpenCL loader of installed drivers that no ``.icd`` file of the system names.
 
-    Does nothing if ``OCL_ICD_VENDORS`` is set (the user's choice stands), or for a driver that an ``.icd`` file of the
-    system names (two Intel CPU runtimes in one process would share their thread pool's symbols). Takes effect only
-    before the first listing of platforms in this process, because loaders read the variable once.
+    If the user has set ``OCL_ICD_VENDORS``, this does nothing. A driver that an ``.icd`` file of the system names is
+    left out: two Intel CPU runtimes in one process would share their thread pool's symbols. Call this before the first
+    listing of platforms in this process, because loaders read the variable only once.
     """
     libraries = unregistered()
     if not libraries or not _is_free(libraries):
@@ -43,7 +43,7 @@ def register() -> None:
 
 
 def unregistered() -> Libraries:
-    """Return the libraries of the drivers that are installed and that no ``.icd`` file of the system names.
+    """Return the libraries of installed drivers that no ``.icd`` file of the system names.
 
     Returns
     -------
@@ -56,7 +56,7 @@ def unregistered() -> Libraries:
 
 
 def why_unlisted(platforms: Collection[str]) -> Iterator[tuple[Driver, str]]:
-    """Yield the drivers that are at least half installed but not among these platforms, and why they are not.
+    """Yield each driver that is at least partly installed but not among these platforms, and the reason.
 
     Parameters
     ----------
@@ -89,7 +89,10 @@ def _why_passed_over(library: str) -> str:
 
 
 def _is_free(libraries: Libraries) -> bool:
-    """Whether nobody has set the variable, but for a process that this one descends from, whose folder may be gone."""
+    """Whether the user has not set the variable: it is unset, or a parent process with svgf_cl set it.
+
+    The folder of a parent process may be gone.
+    """
     return VARIABLE not in os.environ or Path(os.environ[VARIABLE]).name == _folder_name(libraries)
 
 
@@ -97,7 +100,7 @@ def _content(icd: Path) -> str:
     try:
         return icd.read_text(errors="replace")
     except OSError:
-        return ""  # a dangling link, or not for this user: it registers nothing here
+        return ""  # a dangling link, or not readable for this user: it registers no driver here
 
 
 def _folder_name(libraries: Libraries) -> str:
@@ -127,5 +130,5 @@ def _write(icd: Path, text: str) -> None:
 
 
 def _link(link: Path, target: Path) -> None:
-    with contextlib.suppress(FileExistsError):  # by an earlier run, or by another process just now
+    with contextlib.suppress(FileExistsError):  # made by an earlier run, or just now by another process
         link.symlink_to(target)

@@ -1,4 +1,4 @@
-"""Shared virtual memory (SVM) of OpenCL 2: in which of it kernels may work, and how long it has to live."""
+"""Shared virtual memory (SVM) of OpenCL 2: checks that kernels can use it, and keeps it alive while they do."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SYSTEM = cl.device_svm_capabilities.FINE_GRAIN_SYSTEM
 
 
 def check_svm(name: str, memory: cl.SVMPointer, device: cl.Device) -> None:
-    """Raise the error of `wrong` unless kernels on this device can work in the SVM that an Array lies in."""
+    """Raise the error of `wrong` unless kernels on this device can use the SVM of an Array."""
     found = capabilities(device)
     if not found:
         expected = f"an Array in a buffer or memory pool, as {device.name} has no shared virtual memory (SVM)"
@@ -28,7 +28,7 @@ def check_svm(name: str, memory: cl.SVMPointer, device: cl.Device) -> None:
 
 
 def capabilities(device: cl.Device) -> int:
-    """Bits of `pyopencl.device_svm_capabilities`; 0 where a device has no SVM, or no OpenCL 2."""
+    """Return bits of `pyopencl.device_svm_capabilities`; 0 if a device has no SVM or no OpenCL 2."""
     try:
         return int(device.svm_capabilities)
     except cl.Error:
@@ -36,16 +36,16 @@ def capabilities(device: cl.Device) -> int:
 
 
 def is_allocated(memory: Any) -> bool:
-    """Whether OpenCL has allocated this SVM, or the array that it is a view of."""
+    """Whether OpenCL allocated this SVM, or the array of which it is a view."""
     while memory is not None and not isinstance(memory, cl.SVMAllocation | PooledSVM):
         memory = memory.mem if isinstance(memory, cl.SVM) else getattr(memory, "base", None)
     return memory is not None
 
 
 class InFlight:
-    """Keeps SVM alive while commands on the queue may use it: OpenCL, which keeps buffers, does not keep SVM.
+    """Keeps SVM alive while commands on the queue may use it: OpenCL does that for buffers, but not for SVM.
 
-    Freed under a kernel, it would be another's memory that the kernel reads or writes.
+    If SVM were freed while a kernel runs, the kernel would read or write memory that belongs to something else.
     """
 
     def __init__(self, queue: cl.CommandQueue) -> None:
@@ -53,7 +53,7 @@ class InFlight:
         self._kept: list[tuple[cl.Event, list[cl.SVMPointer]]] = []
 
     def keep(self, memory: list[cl.SVMPointer]) -> None:
-        """Keep memory until all that is on the queue now is done; it is let go at the next call after that."""
+        """Keep memory until all commands that are now on the queue are done; the next call after that frees it."""
         done = cl.command_execution_status.COMPLETE
         self._kept = [(event, held) for event, held in self._kept if event.command_execution_status > done]
         if memory:

@@ -1,8 +1,8 @@
-"""How an image is cut into tiles: windows of one size, of which each has a part that is right, and a margin around it.
+"""Cuts an image into tiles: windows of one size, each with a part that is kept and a margin around it.
 
-All windows have the same shape, so that kernels and memory are made ready once. They begin at whole vectors of the
-coarsest buffer's pixels, and all lie inside the image: one at its border ends there, so that what lies outside of the
-image lies outside of the window too.
+All windows have the same shape, so that kernels and memory are prepared once. They begin at whole vectors of the
+coarsest buffer's pixels. All lie inside the image: a window at the image's border ends there, so that the kernels treat
+the border as they do in a whole image.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ class Span:
     Parameters
     ----------
     origin, length : int
-        Of the window that is worked on.
+        Begin and length of the window that is computed.
     begin, end : int
-        Of the part whose pixels are kept; the parts of all tiles make up the image.
+        Begin and end of the part that is kept; the kept parts of all tiles make up the image.
     """
 
     origin: int
@@ -33,30 +33,30 @@ class Span:
 
     @property
     def window(self) -> slice:
-        """Of the image: what is worked on."""
+        """The part of the image that is computed."""
         return slice(self.origin, self.origin + self.length)
 
     @property
     def kept(self) -> slice:
-        """Of the image: what is kept."""
+        """The part of the image that is kept."""
         return slice(self.begin, self.end)
 
     def around(self, margin: int) -> slice:
-        """Of the window: what is kept, and so many pixels around it."""
+        """Return the part of the window that is kept, with `margin` pixels around it."""
         begin, end = self.begin - margin - self.origin, self.end + margin - self.origin
         return slice(max(begin, 0), min(end, self.length))
 
 
 @dataclass(frozen=True)
 class Tile:
-    """A window on the image, and the part of it that is kept."""
+    """A window of the image, and the part of it that is kept."""
 
     rows: Span
     columns: Span
 
     @property
     def window(self) -> tuple[slice, slice]:
-        """Rows and columns of the image that are worked on."""
+        """Rows and columns of the image that are computed."""
         return self.rows.window, self.columns.window
 
     @property
@@ -70,12 +70,12 @@ class Tile:
         return self.rows.origin, self.columns.origin
 
     def around(self, margin: int = 0) -> tuple[slice, slice]:
-        """Rows and columns of the window that are kept, and so many pixels around them."""
+        """Return the rows and columns of the window that are kept, with `margin` pixels around them."""
         return self.rows.around(margin), self.columns.around(margin)
 
 
 def spans(length: int, window: int, margin: int, unit: int) -> list[Span]:
-    """The tiles along an axis of `length` pixels, by windows of `window` pixels that begin at multiples of `unit`.
+    """Return the tiles along an axis of `length` pixels: windows of `window` pixels that begin at multiples of `unit`.
 
     `window` is one of `window_lengths`.
     """
@@ -89,19 +89,19 @@ def spans(length: int, window: int, margin: int, unit: int) -> list[Span]:
 
 
 def count(length: int, window: int, margin: int, unit: int) -> int:
-    """How many windows it takes."""
+    """Return how many windows an axis of `length` pixels takes."""
     return 1 if window == length else 1 - (window - length) // stride(window, margin, unit)
 
 
 def stride(window: int, margin: int, unit: int) -> int:
-    """Pixels from one window to the next: each begins where the one before has its margin, or earlier."""
+    """Return the pixels from one window to the next. The kept parts of neighbouring windows leave no gap."""
     return (window - 2 * margin) // unit * unit
 
 
 def window_lengths(length: int, margin: int, unit: int) -> list[int]:
-    """The least length of a window for each number of them that an axis may be cut into, the longest first."""
+    """Return, for each possible number of windows along an axis, the least length of a window; the longest first."""
     least = {1: length}
-    for window in range(length - unit, 0, -unit):  # the last one then begins at a multiple of `unit` as well
+    for window in range(length - unit, 0, -unit):  # then the last window begins at a multiple of `unit` as well
         if stride(window, margin, unit) < unit:
             break
         least[count(length, window, margin, unit)] = window
@@ -109,7 +109,7 @@ def window_lengths(length: int, margin: int, unit: int) -> list[int]:
 
 
 def best_window(shape: Shape, margin: int, unit: int, fits: Callable[[Shape], bool]) -> Shape | None:
-    """The shape of windows with the least work of all that fit; None where none does."""
+    """Return the window shape with the fewest pixels to compute among those that fit; None if none fits."""
     height, width = shape
 
     def work(window: Shape) -> int:
@@ -120,6 +120,6 @@ def best_window(shape: Shape, margin: int, unit: int, fits: Callable[[Shape], bo
 
 
 def tiles_of(shape: Shape, window: Shape, margin: int, unit: int) -> list[Tile]:
-    """The tiles of an image, row by row."""
+    """Return the tiles of an image, row by row."""
     rows, columns = (spans(*each, margin, unit) for each in zip(shape, window, strict=True))
     return [Tile(*each) for each in product(rows, columns)]

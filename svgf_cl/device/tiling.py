@@ -1,4 +1,4 @@
-"""How a filter's frames are cut into tiles, and how much memory that takes on the device."""
+"""Cuts a filter's frames into tiles, and computes how much device memory the tiles take."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from svgf_cl.filters.margins import widest_margin
 from svgf_cl.filters.pipeline import Buffer, Pipeline, Quantity, Resource, history_of
 from svgf_cl.frame import Shape
 
-SLACK = 64  # pixels that the past of a tile may be larger by, to every side: for motion that differs within the tile
+SLACK = 64  # pixels that a window on the past has more on every side, for motion that differs within the tile
 
 
 @dataclass(frozen=True)
@@ -23,10 +23,11 @@ class Tiling:
     Parameters
     ----------
     pipeline : Pipeline
-        Its lasting buffers hold every pixel, and are read along motion.
+        Its lasting buffers must hold every pixel, and be read along motion.
     shape : (int, int)
         (height, width) of the image.
     row_alignment : int, pixels
+        See `svgf_cl.device.layout.Layout`.
     """
 
     pipeline: Pipeline
@@ -36,14 +37,16 @@ class Tiling:
     def __post_init__(self) -> None:
         for entry in self.pipeline.passes:
             if self.pipeline.past_of(entry) and not entry.follows_motion:
-                raise ValueError(f"{entry.label}: expected to read the past along motion, or to work on whole frames")
+                raise ValueError(
+                    f"{entry.label}: expected to read the previous frame along motion, or to work on whole frames"
+                )
         for resource in (*self.past, *self.results):
             if resource.spacing > 1:
-                raise ValueError(f"{resource.name}: expected what is kept on the host to hold every pixel")
+                raise ValueError(f"{resource.name}: expected a resource that is kept on the host to have every pixel")
 
     @cached_property
     def past(self) -> dict[Resource, tuple[Quantity, ...]]:
-        """What is read of the past."""
+        """The quantities that passes read of the previous frame, by resource."""
         found: dict[Resource, dict[Quantity, None]] = {}
         for entry in self.pipeline.passes:
             for each in self.pipeline.past_of(entry):
@@ -52,50 +55,50 @@ class Tiling:
 
     @cached_property
     def results(self) -> dict[Resource, tuple[Quantity, ...]]:
-        """What is made to be shown: no pass reads it, and none takes its memory."""
+        """The quantities that are written only to be shown: no pass reads them or reuses their memory."""
         last = {slot.buffers[-1] for slot in self.slots}
         return {each: each.quantities for each in self.pipeline.unread if Buffer(each) in last}
 
     @cached_property
     def margin(self) -> int:
-        """Pixels around a tile that are worked on too."""
+        """Pixels around the kept part of a tile that are computed too."""
         return widest_margin(self.pipeline)
 
     @property
     def unit(self) -> int:
-        """Windows begin at multiples of so many pixels."""
+        """Windows begin at multiples of this many pixels."""
         return WIDEST_VECTOR * max(entry.coarse_spacing for entry in self.pipeline.passes)
 
     def past_window(self, window: Shape) -> Shape:
-        """The shape of a window on the past."""
+        """Return the shape of a window on the previous frame."""
         height, width = (min(side, most + 2 * SLACK) for side, most in zip(self.shape, window, strict=True))
         return height, width
 
     def layout(self, shape: Shape) -> Layout:
-        """That of an image of this size."""
+        """Return the layout of an image of this shape."""
         return Layout(*shape, self.row_alignment)
 
     @cached_property
     def slots(self) -> list[Slot]:
-        """The memory of all buffers but those of the past."""
+        """The memory of all buffers except those of the previous frame."""
         left = [(slot, [each for each in slot.buffers if not each.previous]) for slot in memory_slots(self.pipeline)]
         return [replace(slot, buffers=buffers) for slot, buffers in left if buffers]
 
     @property
     def past_slots(self) -> list[Slot]:
-        """The memory of the past."""
+        """The memory of the previous frame's buffers."""
         return [Slot([history_of(resource)], resource.planes, 0) for resource in self.past]
 
     def sizes(self, window: Shape) -> list[int]:
-        """Bytes of every buffer on the device for windows of this shape."""
+        """Return the bytes of every buffer on the device for windows of this shape."""
         parts = ((self.layout(window), self.slots), (self.layout(self.past_window(window)), self.past_slots))
         own = [size for layout, slots in parts for size in Memory(layout, slots).sizes]
         user = self.pipeline.user_nbytes
-        copied = [*user.values(), user.get("motion", 0)]  # a second one where motion leads into several windows
+        copied = [*user.values(), user.get("motion", 0)]  # motion twice: it may lead into several windows
         return own + [nbytes * window[0] * window[1] for nbytes in copied]
 
     def whole(self) -> list[int]:
-        """Bytes of every buffer on the device for whole frames, without tiles."""
+        """Return the bytes of every buffer on the device for whole frames, without tiles."""
         own = Memory(self.layout(self.shape), memory_slots(self.pipeline)).sizes
         return [*own] + [nbytes * self.shape[0] * self.shape[1] for nbytes in self.pipeline.user_nbytes.values()]
 
@@ -104,7 +107,7 @@ class Tiling:
         return self.layout(self.past_window(window)).indexable(self.pipeline.widest)
 
     def window(self, total: int, largest: int) -> Shape | None:
-        """The best shape of windows for so many bytes in all and in one buffer; None where no window fits."""
+        """Return the best window shape for `total` bytes in all and `largest` in one buffer; None if none fits."""
 
         def fits(window: Shape) -> bool:
             sizes = self.sizes(window)
@@ -113,10 +116,10 @@ class Tiling:
         return best_window(self.shape, self.margin, self.unit, fits)
 
     def least(self) -> int:
-        """Bytes of all buffers for the smallest windows."""
+        """Return the bytes of all buffers for the smallest windows."""
         height, width = (window_lengths(side, self.margin, self.unit)[-1] for side in self.shape)
         return sum(self.sizes((height, width)))
 
     def tiles(self, window: Shape) -> list[Tile]:
-        """The tiles, row by row."""
+        """Return the tiles, row by row."""
         return tiles_of(self.shape, window, self.margin, self.unit)

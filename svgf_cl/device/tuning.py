@@ -1,6 +1,4 @@
-"""`Tuning`: how kernels are cut into vectors and work-groups, rows laid out, exponentials taken and arrays copied, and
-the best known for each device.
-"""
+"""`Tuning`: settings that change only the speed of a device, and the file that stores the best ones for each device."""
 
 from __future__ import annotations
 
@@ -25,28 +23,29 @@ STORE = "tunings.json"
 VECTOR_WIDTHS = (1, 4, 8, 16)  # what kernels/vectors.clh is written for
 EXPONENTIALS = ("polynomial", "exp2")  # of kernels/surface.clh
 
-# Most of a row, as each work-group costs a CPU's driver a tenth of a microsecond or more.
+# Long rows, because each work-group costs a CPU's driver a tenth of a microsecond or more.
 CPU_WORK_GROUP = (64, 1)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Tuning:
-    """What changes how fast a device is, and nothing else: results agree to within rounding.
+    """Settings that change only the speed of a device; results agree to within rounding.
 
     Parameters
     ----------
     vector_width : int, pixels, one of 1, 4, 8, 16
         Pixels of a row that a work-item treats as one vector.
     work_group : (int, int), work-items, each >= 1
-        Size of a work-group, along a row and down; less for a kernel of which the device can run fewer together.
+        Size of a work-group, along a row and down. It is reduced for a kernel that the device can only run in smaller
+        groups.
     row_alignment : int, pixels, 16 .. 512, a multiple of 16
-        Rows of the device's planes are a multiple of it apart; see `svgf_cl.device.layout.Layout`.
+        The distance between rows of the device's planes is a multiple of it; see `svgf_cl.device.layout.Layout`.
     exponential : str, "polynomial" or "exp2"
-        How precise weights are computed: by a polynomial, relative error below 4e-6, or by OpenCL's function, at most
-        4 ulp. Fast weights are the same with both.
+        How the exponential of precise weights is computed: by a polynomial (relative error below 4e-6), or by OpenCL's
+        function (at most 4 ulp). Fast weights are the same with both.
     pinned_copies : bool
-        Whether copies of numpy arrays to the device and back go by way of pinned memory. A device that works in the
-        host's memory seldom copies any.
+        Whether numpy arrays are copied to the device and back through pinned memory. A device that works in the host's
+        memory seldom copies any.
 
     Raises
     ------
@@ -107,16 +106,16 @@ CPU_TUNING = Tuning(vector_width=16, work_group=CPU_WORK_GROUP)
 
 
 def best_tuning(device: cl.Device) -> Tuning:
-    """The tuning that ``svgf-cl tune`` found for a device and its driver, else the default."""
+    """Return the tuning that ``svgf-cl tune`` found for a device and its driver, else the default."""
     return stored_tuning(device) or default_tuning(device)
 
 
 def default_tuning(device: cl.Device) -> Tuning:
-    """What suits most devices of this kind.
+    """Return a tuning that suits most devices of this kind.
 
-    On a CPU, vectors of twice its native width, which hides the latency of its arithmetic; 16 is the widest type OpenCL
-    has. Where there is none the driver makes vectors of work-items itself (rusticl on llvmpipe). There, and elsewhere,
-    single pixels.
+    On a CPU, a vector has twice the native width, which hides the latency of the arithmetic, but at most 16, OpenCL's
+    widest type. A driver that reports no native vectors makes vectors of work-items itself (rusticl on llvmpipe): it
+    gets single pixels, and so do GPUs.
     """
     if not device.type & cl.device_type.CPU:
         return GPU_TUNING
@@ -125,9 +124,9 @@ def default_tuning(device: cl.Device) -> Tuning:
 
 
 def stored_tuning(device: cl.Device) -> Tuning | None:
-    """The tuning stored for a device, its driver and these kernels; None where there is none.
+    """Return the tuning stored for a device, its driver and these kernels, or None.
 
-    A file that cannot be used is no reason not to denoise: it counts as none, with a warning.
+    If the file cannot be used, this warns and returns None, so that denoising continues.
     """
     try:
         entry = read_store().get(device_key(device))
@@ -138,7 +137,7 @@ def stored_tuning(device: cl.Device) -> Tuning | None:
         tuning.check(device)
     except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
         warnings.warn(
-            f"{store_path()}: cannot be used ({error!r}), so devices run untuned; 'svgf-cl tune' writes it anew",
+            f"{store_path()}: cannot be used ({error!r}), so devices run untuned; 'svgf-cl tune' writes it again",
             stacklevel=2,
         )
         return None
@@ -146,36 +145,36 @@ def stored_tuning(device: cl.Device) -> Tuning | None:
 
 
 def store_tuning(device: cl.Device, tuning: Tuning) -> Path:
-    """Remember a tuning for a device, its driver and these kernels, and return the file it is in.
+    """Store a tuning for a device, its driver and these kernels, and return the file's path.
 
     Raises
     ------
     SvgfError
-        Where that file cannot be written.
+        If that file cannot be written.
     """
     return write_store(known_tunings() | {device_key(device): {"kernels": kernels_digest(), "tuning": asdict(tuning)}})
 
 
 def forget_tuning(device: cl.Device) -> Path:
-    """Forget what was stored for a device, and return the file it was in; errors as `store_tuning`."""
+    """Remove the stored tuning of a device, and return the file's path; errors are those of `store_tuning`."""
     return write_store({key: entry for key, entry in known_tunings().items() if key != device_key(device)})
 
 
 @functools.cache
 def kernels_digest() -> str:
-    """What identifies the kernels: the best tuning of others may be none of these."""
+    """Return a digest of the kernels, as other kernels may need another tuning."""
     sources = "".join(programs.source(name) for name in programs.names())
     return hashlib.sha256(sources.encode()).hexdigest()[:16]
 
 
 def store_path() -> Path:
-    """The file of tunings."""
+    """Return the path of the file of tunings."""
     return cache_folder() / STORE
 
 
 def read_store() -> dict[str, Any]:
-    """Every stored tuning by `device_key`; `OSError` or `ValueError` where the file is unreadable or damaged."""
-    if not os.path.exists(store_path()):  # False, not an error, where its folder is out of bounds
+    """Return every stored tuning by `device_key`; raise `OSError` or `ValueError` if the file cannot be read."""
+    if not os.path.exists(store_path()):  # returns False, not an error, if its folder is forbidden
         return {}
     entries = read_json(store_path())
     if not isinstance(entries, dict):
@@ -184,7 +183,7 @@ def read_store() -> dict[str, Any]:
 
 
 def known_tunings() -> dict[str, Any]:
-    """As `read_store`, but empty where that fails: whatever was in such a file is lost already."""
+    """Return the result of `read_store`, or nothing if that fails: the content of such a file is lost already."""
     try:
         return read_store()
     except (OSError, ValueError):
@@ -192,6 +191,6 @@ def known_tunings() -> dict[str, Any]:
 
 
 def write_store(entries: dict[str, Any]) -> Path:
-    """Write the file of tunings, whole or not at all."""
+    """Write the file of tunings completely or not at all, and return its path."""
     write_text(store_path(), json.dumps(entries, indent=1))
     return store_path()

@@ -1,4 +1,4 @@
-"""The way in and out for the user's arrays: in place where kernels can work on them as they lie, else copied."""
+"""Lets kernels use the user's arrays: in place where possible, else through copies."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from svgf_cl.interchange import UserArray
 
 
 class Copy(NamedTuple):
-    """A copy on the device from one Array to another, and what it is called in a profile."""
+    """A copy on the device from one Array to another, and its label in a profile."""
 
     label: str
     source: cl_array.Array
@@ -33,16 +33,17 @@ class Copy(NamedTuple):
 
 @dataclass(frozen=True)
 class Exchange:
-    """What the passes of one frame work on, and the copies around them.
+    """The buffers that the passes of one frame use, and the copies before and after the passes.
 
     Parameters
     ----------
     buffers : dict of str to pyopencl.Buffer
-        What the passes read, by the names of fields, and, under the name `OUT`, write: in C order from the first byte.
+        The buffers that the passes read, by the names of fields, and the one that they write, by the name `OUT`. All
+        are in C order from the first byte.
     landing : pyopencl.Buffer
-        Where the result is on the device in the end.
+        The buffer that contains the result in the end.
     before, after : sequence of Copy
-        To be made before the passes and after them.
+        The copies to make before the passes and after them.
     given : sequence of Array
         The user's Arrays.
     """
@@ -55,27 +56,28 @@ class Exchange:
 
     @property
     def gl_objects(self) -> list[cl.MemoryObjectHolder]:
-        """Buffers of OpenGL that are to be acquired for this frame."""
+        """The OpenGL buffers to acquire for this frame."""
         return gl_objects(self.given)
 
     @property
     def svm(self) -> list[cl.SVMPointer]:
-        """Shared virtual memory that has to live until the frame is done."""
+        """The shared virtual memory that must live until the frame is done."""
         return [value.base_data for value in self.given if isinstance(value.base_data, cl.SVMPointer)]
 
 
 class UserArrays:
     """Lets kernels read a frame's arrays and write its result.
 
-    Where the call waits for a numpy result anyway, and the device works in the host's memory, numpy arrays stay where
-    they are. Else they are copied, by way of buffers that are kept from frame to frame. Arrays are used as they are,
-    unless they have strides or an offset, or alpha: these are copied on the device, from and to buffers that are kept.
+    Kernels use numpy arrays in place if the result is a numpy array, so that the call waits for it anyway, and the
+    device works in the host's memory. Else numpy arrays are copied to and from buffers that are kept from frame to
+    frame. Kernels use a `pyopencl.array.Array` in place, unless it has strides, an offset or alpha: then it is copied
+    on the device, to or from buffers that are kept.
 
     Parameters
     ----------
     queue : pyopencl.CommandQueue
     pinned : bool
-        Whether copies of numpy arrays go by way of pinned memory.
+        Whether numpy arrays are copied through pinned memory.
     """
 
     def __init__(self, queue: cl.CommandQueue, *, pinned: bool) -> None:
@@ -86,22 +88,22 @@ class UserArrays:
         self._strided: StridedCopies | None = None  # built where it is needed
 
     def exchange(self, fields: Mapping[str, UserArray], result: UserArray) -> Exchange:
-        """What the passes work on for these fields and this result.
+        """Return the buffers that the passes use for these fields and this result, and queue uploads of numpy arrays.
 
-        Copies of numpy arrays are on the queue when this returns; `in_use` waits for them.
+        `in_use` waits for the uploads.
 
         Parameters
         ----------
         fields : mapping of str to array
-            Those that the passes read, as `Frame.layer` gives them; and `ALPHA` where the result has four channels.
+            The fields that the passes read, as `Frame.layer` returns them, and `ALPHA` if the result has four channels.
         result : (H, W, 3) or (H, W, 4) array
 
         Raises
         ------
         FrameError, ArgumentError
-            If kernels on this queue cannot work in an Array's memory, or the passes would write to what they read.
+            If kernels on this queue cannot use an Array's memory, or the passes would overwrite what they read.
         DeviceError
-            If the device has no room.
+            If the device does not have enough memory.
         """
         arrays = {OUT: result} | {name: as_read(name, value) for name, value in fields.items()}
         given = {name: value for name, value in arrays.items() if isinstance(value, cl_array.Array)}
@@ -129,26 +131,29 @@ class UserArrays:
         return Exchange(buffers, landing, tuple(before.values()), tuple(after), tuple(given.values()))
 
     def copy(self, copies: Sequence[Copy]) -> list[tuple[str, cl.Event]]:
-        """Put copies on the queue: label and event of each."""
+        """Put copies on the queue, and return the label and the event of each."""
         if self._strided is None:
             return []
         return [(copy.label, self._strided.enqueue(copy.source, copy.target)) for copy in copies]
 
     def drop_copies(self) -> None:
-        """Give back what was kept for frames of another size or with other fields."""
+        """Free the buffers that were kept for frames of another size or with other fields."""
         self._kept.clear()
         self._host.forget()
 
     @contextmanager
     def in_use(self, exchange: Exchange, result: UserArray) -> Iterator[None]:
-        """Around all that is done: then a numpy result is complete, and all numpy arrays are their owners' again."""
+        """Use the arrays in a ``with`` block.
+
+        After the block a numpy result is complete, and the owners may change their numpy arrays again.
+        """
         try:
             yield
             if self._works_in_place(result):
                 self._show(exchange.landing, result)
             elif isinstance(result, np.ndarray):
                 self._host.download(OUT, exchange.landing, result)
-        finally:  # after an error too: what was put on the queue before it may still be at work
+        finally:  # after an error too: commands that were queued before it may still run
             waits = isinstance(result, np.ndarray)
             if waits:
                 self._queue.finish()
@@ -159,11 +164,11 @@ class UserArrays:
         return isinstance(result, np.ndarray) and result.flags.aligned and shares_memory(self._queue.device)
 
     def _gather(self, name: str, value: cl_array.Array) -> Copy:
-        """From a field that has strides or an offset."""
+        """Return the copy of a field that has strides or an offset to a buffer without them."""
         return Copy(f"gather {name}", value, self._scratch(name, value.shape, value.dtype))
 
     def _scatter(self, target: cl_array.Array, alpha: cl.Buffer | None) -> list[Copy]:
-        """To a result that the passes cannot write: its light, and its alpha where it has that."""
+        """Return the copies to a result that the passes cannot write directly: its light, and alpha if it has any."""
         light = self._scratch("light", (*target.shape[:2], 3))
         copies = [Copy("scatter light", light, target[..., :3])]
         if alpha:
@@ -171,21 +176,21 @@ class UserArrays:
         return copies
 
     def _scratch(self, name: str, shape: tuple[int, ...], dtype: np.dtype | type = np.float32) -> cl_array.Array:
-        """An Array in a buffer that stays with the denoiser."""
+        """Return an Array in a buffer that is kept."""
         nbytes = math.prod(shape) * np.dtype(dtype).itemsize
         return self._array(self._keep(f"scratch {name}", nbytes), shape, dtype)
 
     def _array(self, buffer: cl.Buffer, shape: tuple[int, ...], dtype: np.dtype | type = np.float32) -> cl_array.Array:
-        """A whole buffer as an Array in C order."""
+        """Return a whole buffer as an Array in C order."""
         return cl_array.Array(self._queue, shape, dtype, data=buffer)
 
     def _from_host(self, arrays: Mapping[str, np.ndarray], result: UserArray) -> dict[str, cl.Buffer]:
-        """Buffers of numpy arrays: their own memory where the device works in it, else kept ones that take copies."""
+        """Return buffers for numpy arrays: their own memory if the device works in it, else kept ones for copies."""
         wrapped = self._wrapped(arrays) if self._works_in_place(result) else {}
         return wrapped | {name: self._keep(name, value.nbytes) for name, value in arrays.items() if name not in wrapped}
 
     def _wrapped(self, arrays: Mapping[str, np.ndarray]) -> dict[str, cl.Buffer]:
-        """Buffers that are the arrays' own memory; no two may overlap (OpenCL 1.2, 5.2.1), so others are left out."""
+        """Return buffers in the arrays' own memory. No two may overlap (OpenCL 1.2, 5.2.1), so others are left out."""
         chosen: dict[str, np.ndarray] = {}
         for name, value in arrays.items():
             if not any(np.may_share_memory(value, other) for other in chosen.values()):
@@ -193,7 +198,7 @@ class UserArrays:
         return {name: wrap(self._queue, value) for name, value in chosen.items()}
 
     def _upload(self, arrays: Mapping[str, np.ndarray], buffers: Mapping[str, cl.Buffer]) -> None:
-        """Put copies of fields to kept buffers on the queue; where one fails, those before it are waited for."""
+        """Queue copies of fields to kept buffers; if one fails, wait for those before it."""
         try:
             for name, value in arrays.items():
                 if name != OUT and buffers[name] is self._kept.get(name):
@@ -203,35 +208,35 @@ class UserArrays:
             raise
 
     def _keep(self, name: str, nbytes: int) -> cl.Buffer:
-        """The buffer of this name and size: that of the last frame, where it had one."""
+        """Return the buffer of this name and size; reuse that of the last frame if there is one."""
         if name not in self._kept or self._kept[name].size != nbytes:
             self._kept[name] = allocate(self._queue, nbytes, nbytes)
         return self._kept[name]
 
     def _show(self, buffer: cl.Buffer, result: np.ndarray) -> None:
-        """Have the host see what kernels wrote to a wrapped array."""
+        """Make the values that kernels wrote to a wrapped array visible to the host."""
         mapped, _ = cl.enqueue_map_buffer(self._queue, buffer, cl.map_flags.READ, 0, result.shape, result.dtype)
         mapped.base.release(self._queue)
 
 
 def shares_memory(device: cl.Device) -> bool:
-    """Whether a device works in the host's memory as well as in its own; a GPU without its own is left to copies."""
+    """Whether a device works in the host's memory as well as in its own; integrated GPUs would, but get copies."""
     return bool(device.type & cl.device_type.CPU)
 
 
 def as_read(name: str, value: UserArray) -> UserArray:
-    """A field as kernels read it: a numpy array of another type, order or alignment is converted."""
+    """Return a field as kernels read it: a numpy array of another type, order or alignment is converted."""
     if isinstance(value, cl_array.Array):
         return value
-    with np.errstate(over="ignore"):  # beyond float32 is infinite, and treated as such
+    with np.errstate(over="ignore"):  # a value beyond float32 becomes infinite, and is treated so
         return np.require(value, element_type(name), ("C", "ALIGNED"))
 
 
 def wrap(queue: cl.CommandQueue, value: np.ndarray) -> cl.Buffer:
-    """A buffer that is a numpy array's own memory, and keeps it alive.
+    """Return a buffer that uses a numpy array's own memory, and keeps it alive.
 
-    It says nothing of reading or writing: marked as read only, arrays that do not begin at a multiple of 128 bytes
-    would be copied by Intel's runtime, at 10 ms for an image of 720p.
+    The buffer is not marked as read-only: Intel's runtime would then copy every array that does not begin at a multiple
+    of 128 bytes, which takes 10 ms for an image of 720p.
     """
     with lack_of_room(queue.device, value.nbytes, value.nbytes):
         return cl.Buffer(queue.context, cl.mem_flags.USE_HOST_PTR, hostbuf=value)

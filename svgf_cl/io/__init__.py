@@ -1,1 +1,1 @@
-"""Files in and out: frames, pictures, what is kept on this machine."""
+"""Reads and writes files: frames, pictures, and the cache on this machine."""

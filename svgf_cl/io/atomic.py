@@ -1,4 +1,4 @@
-"""Files that are written completely or not at all, their folders, and errors of both."""
+"""Writes files and folders completely or not at all, checks them, and makes their errors."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from typing import Any
 
 from svgf_cl.errors import FileError
 
-ATTEMPTS = 10  # to act in a folder that other processes remove again
+ATTEMPTS = 10  # to use a folder that other processes may remove at the same time
 
 
 @contextmanager
 def written_whole(path: Path) -> Iterator[Path]:
-    """Yield an empty file beside `path` to write to; it becomes `path` when the block ends, and is gone if it raises.
+    """Yield an empty file beside `path` to write to; it becomes `path` when the block ends.
 
-    Folders that `path` lies in are made where they are missing, and are gone too if it raises.
-    A process that is killed leaves its file under a name that nothing reads, ``.NAME.HOST-PROCESS.tmp``, and what was
-    at `path` before; `output_folder` deletes it.
+    If the block raises an error, the file is deleted. Missing parent folders of `path` are made, and removed after an
+    error. If the process is killed, the file stays as ``.NAME.HOST-PROCESS.tmp``, which nothing reads, and `path` is
+    unchanged; `output_folder` deletes such files.
 
     Raises
     ------
     FileError
-        Where the file cannot be written; it names `path` and the system's reason.
+        If the file cannot be written; the message names `path` and the system's reason.
     """
     with _beside(path, Path.touch) as aside:
         yield aside
@@ -40,14 +40,14 @@ def written_whole(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def folder_written_whole(path: Path) -> Iterator[Path]:
-    """Yield an empty folder beside `path` to fill; it becomes `path` when the block ends, and is gone if it raises.
+    """Yield an empty folder beside `path` to fill; it becomes `path` when the block ends.
 
-    All else is as with `written_whole`.
+    Errors and killed processes are handled as in `written_whole`.
 
     Raises
     ------
     FileError
-        Where something is at `path` already, or the folder cannot be written.
+        If `path` exists already, or the folder cannot be written.
     """
     with _beside(path, Path.mkdir) as aside:
         yield aside
@@ -60,14 +60,17 @@ def folder_written_whole(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def _beside(path: Path, make: Callable[[Path], object]) -> Iterator[Path]:
-    """Make and yield what will be at `path`; it is gone if the block raises, and so are folders made for it."""
+    """Make and yield the file or folder that will be at `path`.
+
+    If the block raises an error, it and the folders made for it are deleted.
+    """
     aside = _aside(path)
     made: list[Path] = []
     try:
         made = _in_made(path.parent, lambda: make(aside))
         yield aside
     except BaseException as error:
-        with contextlib.suppress(OSError):  # there may never have been one
+        with contextlib.suppress(OSError):  # it may not exist
             _discard(aside)
         _remove(made)
         if isinstance(error, OSError):
@@ -76,34 +79,34 @@ def _beside(path: Path, make: Callable[[Path], object]) -> Iterator[Path]:
 
 
 def check_new(path: Path) -> Path:
-    """Return `path` for a folder that is still to be made; `FileError` where something is there already."""
+    """Return `path` for a folder to make; raise `FileError` if `path` exists already."""
     if os.path.lexists(path):
         raise FileError(f"{path}: expected a new folder, but it is there already; delete it, or name another")
     return path
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text, completely or not at all; names of files that are not text are escaped as in Python.
+    """Write a text completely or not at all; bytes of file names that are not UTF-8 are escaped as in Python.
 
     Raises
     ------
     FileError
-        As `written_whole`.
+        If the file cannot be written.
     """
     with written_whole(path) as aside:
         aside.write_text(text, encoding="utf-8", errors="backslashreplace", newline="\n")
 
 
 def output_folder(path: Path) -> Path:
-    """Return the folder `path` for files that are still to be made, cleared of what killed processes left there.
+    """Check that `path` can be a folder for output files, delete leftovers of killed processes there, and return it.
 
-    It is made with the first file, so that a run that fails before leaves no empty folder; that it can be made is found
-    out here, before any work is done.
+    The check comes before any work is done. The folder itself is made with its first file, so that a run that fails
+    before that leaves no empty folder.
 
     Raises
     ------
     FileError
-        Where it cannot be made or written to.
+        If the folder cannot be made or written to.
     """
     try:
         _remove(_in_made(path, lambda: try_to_write(path)))
@@ -115,7 +118,13 @@ def output_folder(path: Path) -> Path:
 
 
 def output_file(path: Path) -> Path:
-    """Return `path` for a file that is still to be made; errors as of `output_folder`, before any work is done."""
+    """Check that `path` can be an output file, before any work is done, and return it.
+
+    Raises
+    ------
+    FileError
+        If it is a folder, or its folder cannot be made or written to.
+    """
     output_folder(path.parent)
     if path.is_dir():
         raise FileError(f"{path}: expected a file to write, got a folder")
@@ -123,14 +132,14 @@ def output_file(path: Path) -> Path:
 
 
 def try_to_write(folder: Path) -> None:
-    """Write to a file without a name in `folder`; `OSError` where nothing can be written there."""
+    """Write to a nameless file in `folder`; raise `OSError` if files cannot be written there."""
     with tempfile.TemporaryFile(dir=folder) as file:
         file.write(b"\0")
         file.flush()
 
 
 def require(path: Path) -> None:
-    """Raise `FileError` unless there is something at `path` that this user may look at."""
+    """Raise `FileError` unless `path` exists and this user may access it."""
     try:
         path.stat()
     except FileNotFoundError as error:
@@ -140,7 +149,7 @@ def require(path: Path) -> None:
 
 
 def entries(folder: Path) -> list[Path]:
-    """What is in `folder`; `FileError` where it cannot be read."""
+    """Return the paths in `folder`; raise `FileError` if it cannot be read."""
     try:
         return list(folder.iterdir())
     except OSError as error:
@@ -148,19 +157,19 @@ def entries(folder: Path) -> list[Path]:
 
 
 def unreadable(path: Path, error: OSError) -> FileError:
-    """Make the error for a file or folder that is there but cannot be read."""
+    """Return the error for a file or folder that exists but cannot be read."""
     return FileError(f"{path}: cannot be read ({error.strerror or error})")
 
 
 def read_json(path: Path) -> Any:
-    """Read a JSON file that anyone may have damaged.
+    """Read a JSON file that may be damaged.
 
     Raises
     ------
     OSError
-        It cannot be read.
+        If it cannot be read.
     ValueError
-        It is no JSON, or nested so deeply that nobody meant it.
+        If it is not JSON, or nested too deeply for the parser.
     """
     try:
         return json.loads(path.read_bytes())
@@ -169,12 +178,12 @@ def read_json(path: Path) -> Any:
 
 
 def _aside(path: Path) -> Path:
-    """Where this process writes what will be at `path`."""
+    """Return the path that this process writes to before it becomes `path`."""
     return path.with_name(f".{path.name}.{socket.gethostname()}-{os.getpid()}.tmp")
 
 
 def _discard(path: Path) -> None:
-    """Delete a file or a folder with all that is in it."""
+    """Delete a file, or a folder with its content."""
     if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path, ignore_errors=True)
     else:
@@ -182,10 +191,10 @@ def _discard(path: Path) -> None:
 
 
 def _in_made(folder: Path, act: Callable[[], object]) -> list[Path]:
-    """Make a folder as `_make` does and act in it; return what was made, which is gone if it raises.
+    """Make a folder as `_make` does, and call `act`; return the folders that were made.
 
-    Tasks of a farm begin at the same time, and each removes again what it made to try it out: where another one did so
-    in between, all is done once more.
+    After an error these folders are removed again. Tasks of a farm begin at the same time, and each removes the folders
+    that it made for a test. If another task removes the folder before `act`, everything is repeated.
     """
     made: list[Path] = []
     try:
@@ -204,7 +213,7 @@ def _in_made(folder: Path, act: Callable[[], object]) -> list[Path]:
 
 
 def _make(folder: Path) -> list[Path]:
-    """Make a folder and those that it lies in, as far as they are missing; return what was made, innermost first."""
+    """Make a folder and its missing parents; return the folders that were made, innermost first."""
     missing = [place for place in (folder, *folder.parents) if not os.path.lexists(place)]
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -215,14 +224,14 @@ def _make(folder: Path) -> list[Path]:
 
 
 def _remove(folders: Sequence[Path]) -> None:
-    """Remove folders, each before the one that it lies in, as far as they are there and empty."""
+    """Remove those of the folders that exist and are empty; they are given innermost first."""
     for folder in folders:
         with contextlib.suppress(OSError):
             folder.rmdir()
 
 
 def _sync(path: Path) -> None:
-    """Wait until the file is on the disk: only then is it known that there was room, and is it whole after a crash."""
+    """Wait until the file is on the disk: only then is it certain that there was room, and that it survives a crash."""
     descriptor = os.open(path, os.O_RDWR)
     try:
         os.fsync(descriptor)
@@ -231,7 +240,7 @@ def _sync(path: Path) -> None:
 
 
 def _delete_leftovers(folder: Path) -> None:
-    """Delete what processes of this machine were writing to `folder` when they were killed."""
+    """Delete files that processes of this machine were writing to `folder` when they were killed."""
     left = re.compile(rf"\..+\.{re.escape(socket.gethostname())}-(\d{{1,9}})\.tmp")
     for path in folder.iterdir():
         match = left.fullmatch(path.name)
@@ -240,13 +249,13 @@ def _delete_leftovers(folder: Path) -> None:
 
 
 def _is_running(process: int) -> bool:
-    """Whether there is a process with this number; True if the system does not say."""
+    """Whether a process with this number is running; True if the system does not say."""
     if os.name != "posix":
         return True
     try:
         os.kill(process, 0)
     except ProcessLookupError:
         return False
-    except OSError:  # another user's
+    except OSError:  # another user's process
         return True
     return True

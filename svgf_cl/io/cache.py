@@ -1,4 +1,4 @@
-"""The cache folder of svgf_cl, and what happens if it cannot be written."""
+"""The cache folder of svgf_cl, and warnings if it cannot be written."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ import pyopencl as cl
 from svgf_cl.errors import FileError
 from svgf_cl.io.atomic import try_to_write
 
-# Binaries of all kernels and of the tracer, and some more: on a disk with less room left, writers fail half way.
+# Enough for the binaries of all kernels and of the tracer: on a disk with less room, writers would fail half-way.
 ROOM = 64 * 2**20
 
-# In place of a cache folder for a user without a home: nothing can be read or written there.
+# Stands for the cache folder of a user without a home; nothing can be read or written there.
 NOWHERE = Path(os.devnull, "no home folder")
 
-# What can be written in a container that is read-only as a whole.
+# A folder that is writable even in a read-only container.
 SHARED_MEMORY = "/dev/shm"
 
 _problems: list[str] = []
@@ -33,7 +33,7 @@ _told: list[str] = []
 
 
 def cache_folder() -> Path:
-    """Return the platform's per-user cache folder of svgf_cl; it need not exist, and may not be writable."""
+    """Return the platform's per-user cache folder of svgf_cl, which may be missing or not writable."""
     return users_folder("svgf_cl")
 
 
@@ -41,17 +41,17 @@ def users_folder(name: str) -> Path:
     """Return the user's cache folder of the program `name`, by the rules of the platform."""
     try:
         folder = platformdirs.user_cache_path(name, appauthor=name if name != "svgf_cl" else False)
-    except RuntimeError:  # neither HOME nor an entry in passwd
+    except RuntimeError:  # there is neither HOME nor an entry in passwd
         return NOWHERE / name
-    # Older versions of platformdirs begin it with "~" then: in the current folder, which may be anyone's.
+    # Older versions of platformdirs return a path that begins with "~" then, which would be in the current folder.
     return folder if folder.is_absolute() else NOWHERE / name
 
 
 @functools.cache
 def is_usable(folder: Path) -> bool:
-    """Whether files can be kept in a cache folder, be it there or still to be made; tried once in a process.
+    """Whether files can be written to a cache folder, which may not exist yet; tested once in a process.
 
-    Where they cannot, `tell` says so.
+    If not, `tell` warns.
     """
     try:
         _try(folder)
@@ -62,7 +62,7 @@ def is_usable(folder: Path) -> bool:
 
 
 def tell() -> None:
-    """Warn once in a process that a folder cannot be written: which folder, what that costs, and what helps."""
+    """Warn once in a process if a cache folder cannot be written: name the folder, the consequences and the remedy."""
     if _problems and not _told:
         _told.append(_problems[0])
         warnings.warn(
@@ -74,7 +74,7 @@ def tell() -> None:
 
 @contextmanager
 def keeping() -> Iterator[None]:
-    """A context for writing to a cache: if that fails, `tell` warns, and there is no error."""
+    """Return a context for writing to a cache: if that fails, `tell` warns, and there is no error."""
     try:
         yield
     except (OSError, FileError) as error:
@@ -84,12 +84,12 @@ def keeping() -> Iterator[None]:
 
 @functools.cache
 def temporary_folder() -> Path:
-    """A folder for what must be written somewhere, in place of a cache; it is deleted when this process ends.
+    """Return a folder to use instead of a cache folder; it is deleted when this process ends.
 
     Raises
     ------
     OSError
-        Where no temporary folder can be made either, not even in shared memory.
+        If no temporary folder can be made, not even in shared memory.
     """
     try:
         folder = Path(tempfile.mkdtemp(prefix="svgf_cl-"))
@@ -100,12 +100,12 @@ def temporary_folder() -> Path:
 
 
 def device_key(device: cl.Device) -> str:
-    """Return what identifies a device together with its driver; equal devices share it."""
+    """Return the key of a device and its driver; equal devices have the same key."""
     return " | ".join((device.platform.name, device.platform.version, device.name, device.driver_version))
 
 
 def _try(folder: Path) -> None:
-    """Write to a folder, or where it would be made; nothing stays there."""
+    """Test that a folder, or its nearest parent that exists, can be written to; raise `OSError` if not."""
     place = folder
     while not os.path.lexists(place):
         place = place.parent
@@ -116,5 +116,5 @@ def _try(folder: Path) -> None:
 
 
 def _delete(folder: Path, owner: int) -> None:
-    if os.getpid() == owner:  # and not a fork of it
+    if os.getpid() == owner:  # not in a fork of the owner
         shutil.rmtree(folder, ignore_errors=True)

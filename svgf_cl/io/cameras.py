@@ -1,17 +1,17 @@
-"""The cameras of a shot: from a file beside its frames, or from the header of a frame.
+"""Reads the cameras of a shot: from a file beside its frames, or from the header of a frame.
 
-``cameras.json`` holds ``width`` and ``height`` of the images in pixels, ``axes`` (see `Camera.from_fov`; a file whose
-``renderer`` is Mitsuba has Mitsuba's without saying so), and ``cameras``, a list with one entry a frame::
+``cameras.json`` has ``width`` and ``height`` of the images in pixels, ``axes`` (see `Camera.from_fov`; the default is
+``mitsuba`` if ``renderer`` is Mitsuba), and ``cameras``, a list with one entry for each frame::
 
     {"width": 1280, "height": 720, "axes": "opengl", "cameras": [
         {"frame": 1, "to_world": [[1, 0, 0, 0], [0, 1, 0, 2], [0, 0, 1, 5], [0, 0, 0, 1]], "fov": 40, "fov_axis": "x"}
     ]}
 
-- ``frame``: the number in the frame's name. That of the frame before the first gives the first one a motion.
+- ``frame``: the number in the frame's name. The first frame gets a motion if there is an entry for the frame before it.
 - ``to_world`` or ``world_to_camera``: a matrix by rows, for columns (x, y, z, 1), without scale.
-- ``fov`` in degrees and ``fov_axis`` (x, y, smaller or larger), or ``focal`` and ``center`` as `Camera` has them, two
-  numbers each, with ``"orthographic": true`` where rays are parallel. ``width`` and ``height`` serve the first alone.
-- ``axes``, where a camera has others than the file says.
+- ``fov`` in degrees and ``fov_axis`` (x, y, smaller or larger). Or ``focal`` and ``center``, two numbers each, as in
+  `Camera`, with ``"orthographic": true`` if rays are parallel. Only ``fov`` needs ``width`` and ``height``.
+- ``axes``, if the camera's axes differ from those of the file.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from svgf_cl.io.exr_header import Attribute
 from svgf_cl.matrices import Array, inverse, rigid
 
 NAME = "cameras.json"
-ATTRIBUTES = {"m44f": "<f4", "m44d": "<f8"}  # types of matrices in a header, and of their numbers
+ATTRIBUTES = {"m44f": "<f4", "m44d": "<f8"}  # the types of matrices in a header, and of their numbers
 EXPECTED: dict[tuple[int, ...], str] = {(): "a number", (2,): "2 numbers", (4, 4): "4 rows of 4 numbers"}
 
 
@@ -40,13 +40,13 @@ def read_cameras(path: Path, shape: tuple[int, int] | None = None) -> dict[int, 
     ----------
     path : Path
     shape : (int, int), optional
-        (height, width) of the display window that the cameras must be of, in pixels.
+        (height, width) of the frames' display window in pixels, which the cameras must match.
 
     Raises
     ------
     FileError
-        The file cannot be read, or says something that no camera has, or is of images of another size; the message
-        names the frame and the field.
+        If the file cannot be read, contains an invalid camera, or is for images of another size. The message names the
+        frame and the field.
     """
     try:
         content = read_json(path)
@@ -90,12 +90,12 @@ def camera_of_header(attributes: Mapping[str, Attribute], shape: tuple[int, int]
     Returns
     -------
     Camera or None
-        None where ``worldToCamera`` or ``worldToNDC`` is missing.
+        None if ``worldToCamera`` or ``worldToNDC`` is missing.
 
     Raises
     ------
     ArgumentError
-        An attribute is no matrix, or the two are not those of one camera.
+        If an attribute is no matrix, or the two do not belong to one camera.
     """
     if not {"worldToCamera", "worldToNDC"} <= attributes.keys():
         return None
@@ -103,7 +103,7 @@ def camera_of_header(attributes: Mapping[str, Attribute], shape: tuple[int, int]
 
 
 def _attribute(attributes: Mapping[str, Attribute], name: str) -> Array:
-    """The matrix in an attribute of a header."""
+    """Return the matrix in an attribute of a header."""
     kind, content = attributes[name]
     number = np.dtype(ATTRIBUTES.get(kind, "<f4"))
     if kind not in ATTRIBUTES or len(content) != 16 * number.itemsize:
@@ -112,7 +112,7 @@ def _attribute(attributes: Mapping[str, Attribute], name: str) -> Array:
 
 
 def _camera(entry: Mapping[str, Any]) -> Camera:
-    """The camera of an entry that has all that the file says of every camera."""
+    """Return the camera of an entry, which includes the fields that the file sets for all cameras."""
     axes: Any = entry.get("axes")
     matrices = [name for name in ("to_world", "world_to_camera") if name in entry]
     if len(matrices) != 1:
@@ -122,7 +122,7 @@ def _camera(entry: Mapping[str, Any]) -> Camera:
     if "focal" not in entry:
         fov, fov_axis = float(_numbers(entry, "fov", ())), entry.get("fov_axis")
         shape = _size(entry, "height"), _size(entry, "width")
-        return Camera.from_fov(to_world, fov, shape, fov_axis, axes)  # type: ignore[arg-type]  # it checks them
+        return Camera.from_fov(to_world, fov, shape, fov_axis, axes)  # type: ignore[arg-type]  # from_fov checks them
     orthographic = entry.get("orthographic", False)
     if not isinstance(orthographic, bool):
         raise ArgumentError("orthographic", "true or false", shown(orthographic))
@@ -132,7 +132,7 @@ def _camera(entry: Mapping[str, Any]) -> Camera:
 
 
 def _size(entry: Mapping[str, Any], name: str) -> int:
-    """A side of the image in pixels."""
+    """Return the image's width or height in pixels."""
     value = entry.get(name)
     if type(value) is not int:
         raise ArgumentError(name, "a whole number of pixels", shown(value) if name in entry else "nothing")
@@ -140,7 +140,7 @@ def _size(entry: Mapping[str, Any], name: str) -> int:
 
 
 def _numbers(entry: Mapping[str, Any], name: str, shape: tuple[int, ...]) -> Array:
-    """The numbers in a field of an entry, as an array of `shape`."""
+    """Return the numbers in a field of an entry, as an array of `shape`."""
     value = entry.get(name)
     try:
         array = np.asarray(value)
@@ -152,6 +152,6 @@ def _numbers(entry: Mapping[str, Any], name: str, shape: tuple[int, ...]) -> Arr
 
 
 def cameras_beside(path: Path) -> Path | None:
-    """The file of cameras in the folder of a frame, or in the one above it, if there is one."""
+    """Return the file of cameras in a frame's folder, or else in its parent folder, or None."""
     folder = path.resolve().parent
     return next((file for file in (folder / NAME, folder.parent / NAME) if file.is_file()), None)

@@ -1,4 +1,4 @@
-"""Depth and motion that files lack, computed from their other fields and from cameras."""
+"""Computes depth and motion that files lack from their other fields and from cameras."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from svgf_cl.io.readers.reader import Values
 
 
 def derived(values: Values, camera: Camera | None, previous: Camera | None, *, still: bool) -> Values:
-    """What can be computed of depth and motion that are missing.
+    """Return depth and motion, as far as they are missing and can be computed.
 
     Parameters
     ----------
     values : Values
-        What is there.
+        The fields that the file has.
     camera, previous : Camera, optional
-        Those of the frame and of the one before it.
+        The cameras of the frame and of the previous one.
     still : bool
         Whether nothing moves.
     """

@@ -1,4 +1,4 @@
-"""From light to what a screen shows: exposure, the sRGB curve, 8-bit pictures as files."""
+"""Turns linear light into pictures for a screen: exposure, the sRGB curve, and files with 8 bits."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from svgf_cl.io.atomic import written_whole
 Linear = npt.NDArray[np.floating]
 Bytes = npt.NDArray[np.uint8]
 
-MAX_STOPS = 64  # of exposure: beyond, all is black or white
+MAX_STOPS = 64  # of exposure: beyond that, every picture is black or white
 MIDDLE_GREY = 0.18
 BLOCK = 8  # pixels
-QUALITY = 90  # of a WebP: it hides nothing; PNG ignores it
+QUALITY = 90  # of a WebP file: its errors are invisible; PNG ignores it
 
 
 def display(linear: Linear, exposure: float = 0.0) -> npt.NDArray[np.float64]:
@@ -45,10 +45,10 @@ def display(linear: Linear, exposure: float = 0.0) -> npt.NDArray[np.float64]:
 
 
 def automatic_exposure(linear: Linear) -> float:
-    """Stops that bring the log-average luminance of a picture (H, W, 3) to middle grey.
+    """Return the stops that bring the log-average luminance of a picture (H, W, 3) to middle grey.
 
-    Averaged over blocks first, so that noise changes little; black ones, where nothing was lit, do not count. A picture
-    that is black all over stays as it is.
+    The luminance is first averaged over blocks, so that noise changes the result little. Black blocks, where nothing is
+    lit, do not count. For an all-black picture the result is 0.
 
     Source: Reinhard et al., Photographic Tone Reproduction for Digital Images, SIGGRAPH 2002, equations 1 and 2.
     """
@@ -67,8 +67,8 @@ def to_bytes(linear: Linear, exposure: float = 0.0) -> Bytes:
 
 
 def write_image(path: Path, picture: Bytes) -> None:
-    """Write a (H, W, 3) 8-bit picture, whole or not at all; the suffix says how, such as .png or .webp."""
-    # Encoded in memory: OpenImageIO would say nothing of a full disk when writing PNG, and never end when writing WebP.
+    """Write a (H, W, 3) 8-bit picture completely or not at all, in the format of the suffix, such as .png or .webp."""
+    # Encoded in memory: on a full disk OpenImageIO reports no error when writing PNG, and hangs when writing WebP.
     encoded = io.BytesIO()
     with written_whole(path) as aside:
         Image.fromarray(picture).save(encoded, format=path.suffix[1:], quality=QUALITY)

@@ -1,4 +1,4 @@
-"""OpenEXR files: written completely or not at all, and read without trusting their claims."""
+"""Writes OpenEXR files completely or not at all, and reads them with checks of all that their headers claim."""
 
 from __future__ import annotations
 
@@ -27,30 +27,30 @@ from svgf_cl.io.image import COMPRESSIONS, Image, Part, Plane, Windows, new_imag
 from svgf_cl.io.layers import in_usual_order, unique_names
 from svgf_cl.io.window import Window
 
-# A file that claims more bytes of pixels than these is refused, unless it is so large that they can be in it: no method
-# of compression in use makes much less of a picture than zlib's best, one byte of 1032.
+# A file that claims more bytes of pixels than this is rejected, unless the file is large enough to contain them: no
+# compression in use is much better than zlib's best, which turns 1032 bytes into one.
 TRUSTED = 2**30
 MAX_RATIO = 1032
 
-# Pixels of a display window beyond those of the data window, which cost nothing to claim: 16384 x 16384.
+# Most pixels of a display window that is larger than the data window, 16384 x 16384: a file can claim any number.
 MAX_DISPLAY = 2**28
 
 
 def write_channels(path: Path, planes: Mapping[str, Plane], attributes: Mapping[str, int | float | str] = {}) -> None:
-    """Write (H, W) planes as the channels of one EXR file with such attributes, whole or not at all.
+    """Write (H, W) planes as the channels of one EXR file with these attributes, completely or not at all.
 
     Raises
     ------
     FileError
-        The file cannot be written; whatever was at `path` before is still there.
+        If the file cannot be written; an earlier file at `path` stays as it was.
     """
     write_image(path, new_image(planes, {name: encoded(value) for name, value in attributes.items()}))
 
 
 def write_image(path: Path, image: Image) -> None:
-    """Write an EXR file of these parts, channels, windows and attributes; errors of `write_channels`.
+    """Write an EXR file with the image's parts, channels, windows and attributes; errors are those of `write_channels`.
 
-    The same image makes the same file: there is no date in it but one among the attributes.
+    The same image always makes the same file: no date is added.
     """
     with written_whole(path) as aside:
         pixels = aside.with_name(f".pixels{aside.name}")
@@ -67,41 +67,41 @@ def write_image(path: Path, image: Image) -> None:
 
 
 def _pixels(data: Window, index: int, part: Part) -> Any:
-    """What the library must know to write the pixels of a part."""
+    """Return a part as the library needs it to write its pixels."""
     window = part.elsewhere or data
     first, last = (window.x, window.y), (window.x + window.width - 1, window.y + window.height - 1)
     header = {
         "compression": OpenEXR.Compression(COMPRESSIONS.index(part.lossless_compression)),
         "type": OpenEXR.scanlineimage,
         "dataWindow": (np.array(first, np.int32), np.array(last, np.int32)),
-        # Not yet the right one, but that of all parts, as it must be.
+        # Not the right one yet; here it only has to be the same in all parts.
         "displayWindow": (np.zeros(2, np.int32), np.zeros(2, np.int32)),
     }
     planes = {part.stored.get(name, name): np.ascontiguousarray(plane) for name, plane in part.planes.items()}
-    return OpenEXR.Part(header, planes, str(index))  # two of one name would not be written
+    return OpenEXR.Part(header, planes, str(index))  # the library rejects two parts of one name
 
 
 def _has_header(path: Path) -> bool:
     """Whether the library can read the header of a file."""
     try:
         OpenEXR.File(_name(path), header_only=True)
-    except UnicodeDecodeError:  # it could, but for a text
+    except UnicodeDecodeError:  # only a text cannot be decoded
         return True
-    except Exception:  # of whatever type the library's are
+    except Exception:  # the library raises errors of any type
         return False
     return True
 
 
 def is_exr(path: Path) -> bool:
-    """Whether what is at `path` is a file that says it is an OpenEXR file.
+    """Whether `path` is a file that begins as an OpenEXR file does.
 
     Raises
     ------
     FileError
-        There is nothing, or it cannot be read.
+        If it does not exist, or cannot be read.
     """
     require(path)
-    if not path.is_file():  # but a pipe, which might keep us waiting for ever
+    if not path.is_file():  # reading a pipe might wait forever
         return False
     try:
         with path.open("rb") as file:
@@ -111,43 +111,43 @@ def is_exr(path: Path) -> bool:
 
 
 def read_channels(path: Path) -> dict[str, Plane]:
-    """Read the channels of an EXR file as (H, W) planes, by the names of `read_image`; errors as of it."""
+    """Read the channels of an EXR file as (H, W) planes; names and errors are those of `read_image`."""
     return read_image(path).planes
 
 
 def read_attribute(path: Path, name: str) -> int | float | str | bytes | None:
-    """The attribute of the first part of an EXR file called `name`; None where there is none.
+    """Read the attribute `name` of the first part of an EXR file; None if there is none.
 
-    A number or a text; what is neither, as the bytes that it is. Errors are those of `read_image`.
+    The result is a number, a text, or bytes for any other type. Errors are those of `read_image`.
     """
     parts, _ = _checked(path)
     return decoded(parts[0][name]) if name in parts[0] else None
 
 
 def read_attributes(path: Path) -> Attributes:
-    """Read the header of the first part of an EXR file, type and bytes by name; errors as of `read_image`."""
+    """Read the attributes of the first part of an EXR file, type and bytes by name; errors as in `read_image`."""
     parts, _ = _checked(path)
     return parts[0]
 
 
 def read_windows(path: Path) -> Windows:
-    """Read where the pixels of an EXR file lie; errors as of `read_image`."""
+    """Read the windows of an EXR file; errors as in `read_image`."""
     _, layouts = _checked(path)
     return layouts[0].windows
 
 
 def read_image(path: Path) -> Image:
-    """Read all of a file, every part of it.
+    """Read all parts of a file.
 
-    A channel goes by its name in the file; where several parts have that name, `unique_names` says by which. Of tiles
-    in several resolutions the finest is read. Parts of another view than the first one, and those that do not have the
-    windows of the first part, are `Part.elsewhere`.
+    A channel has its name in the file; if several parts have the same name, `unique_names` makes them different. Of
+    tiles in several resolutions, the finest are read. Parts that have another view than the first, or other windows
+    than the first part, are `Part.elsewhere`.
 
     Raises
     ------
     FileError
-        The file is missing, of another format or damaged, or claims more pixels than it can hold, or what it holds is
-        of a kind that is not read: deep pixels, channels with fewer pixels than others.
+        If the file is missing, damaged or of another format, claims more pixels than it can contain, or has pixels of a
+        kind that is not supported: deep pixels, or channels with fewer pixels than others.
     """
     headers, layouts = _checked(path)
     view = next((layout.view for layout in layouts if layout.view), "")
@@ -166,7 +166,7 @@ def read_image(path: Path) -> Image:
 
 
 def _part(header: Attributes, layout: Layout, planes: Mapping[str, Plane], called: Mapping[str, str] | None) -> Part:
-    """A part whose channels go by other names than in the file; without such names it is elsewhere."""
+    """Return a part whose channels have the names `called`; without these the part is elsewhere."""
     if called is None:
         return Part(planes, passing(header), layout.compression, elsewhere=layout.windows.data)
     stored = {own: name for name, own in called.items() if own != name}
@@ -174,12 +174,12 @@ def _part(header: Attributes, layout: Layout, planes: Mapping[str, Plane], calle
 
 
 def _planes(path: Path, layouts: Sequence[Layout]) -> list[dict[str, Plane]]:
-    """The channels of each part, by their names in the file."""
+    """Read the channels of each part, by their names in the file."""
     try:
         parts = _decoded(path)
     except MemoryError as error:
         raise FileError(f"{path}: expected an image that fits into memory, got a larger one") from error
-    except Exception as error:  # of whatever type the library's are
+    except Exception as error:  # the library raises errors of any type
         raise FileError(f"{path}: expected a complete image, got a damaged one ({one_line(error)})") from error
     found = [{name: part.channels[name].pixels for name in in_usual_order(part.channels)} for part in parts]
     claimed = [
@@ -189,17 +189,17 @@ def _planes(path: Path, layouts: Sequence[Layout]) -> list[dict[str, Plane]]:
         }
         for layout in layouts
     ]
-    # The library leaves out a part whose pixels it cannot read.
+    # The library skips a part whose pixels it cannot read.
     if [{name: (plane.shape, plane.dtype) for name, plane in planes.items()} for planes in found] != claimed:
         raise FileError(f"{path}: expected a complete image, got a damaged one (some of its pixels cannot be read)")
     return found
 
 
 def _decoded(path: Path) -> list[Any]:
-    """The parts of a file as the library reads them."""
+    """Read the parts of a file with the library."""
     try:
         return [*OpenEXR.File(_name(path), separate_channels=True).parts]
-    except UnicodeDecodeError:  # in a text of its header, which passes through as it is
+    except UnicodeDecodeError:  # in a text of the header; a copy with ASCII texts has the same pixels
         with tempfile.TemporaryDirectory() as folder:
             copy = Path(folder, "copy.exr")
             copy_in_ascii(path, copy)
@@ -207,9 +207,9 @@ def _decoded(path: Path) -> list[Any]:
 
 
 def _checked(path: Path) -> tuple[list[Attributes], list[Layout]]:
-    """Read the header of a file that can be read, part by part; all that is wrong with it is a FileError."""
+    """Read and check the header of each part of a file; raise `FileError` for anything that is wrong."""
     require(path)
-    if not path.is_file():  # but a folder; or a pipe, which might keep us waiting for ever
+    if not path.is_file():  # a folder; or a pipe, and reading it might wait forever
         raise FileError(f"{path}: expected an OpenEXR file, found something that is not a file")
     try:
         _name(path)
@@ -229,7 +229,7 @@ def _checked(path: Path) -> tuple[list[Attributes], list[Layout]]:
 
 
 def _check_claims(layouts: Sequence[Layout], held: int) -> None:
-    """Raise `ValueError` if a file of `held` bytes claims more pixels than it, or the memory, can hold."""
+    """Raise `ValueError` if a file of `held` bytes claims more pixels than it, or memory, can contain."""
     claimed = sum(layout.size for layout in layouts)
     if claimed > max(TRUSTED, MAX_RATIO * held):
         raise ValueError(f"expected a complete image, got {claimed} bytes of pixels in a file of {held}")
@@ -239,7 +239,7 @@ def _check_claims(layouts: Sequence[Layout], held: int) -> None:
 
 
 def _check_kind(layouts: Sequence[Layout]) -> None:
-    """Raise `ValueError` where a file is of a kind that is not read."""
+    """Raise `ValueError` if a file has pixels of a kind that is not supported."""
     if any(layout.is_deep for layout in layouts):
         raise ValueError("expected flat pixels, got deep ones; flatten the image first")
     sparse = [name for layout in layouts for name, channel in layout.channels.items() if not channel.is_full]
@@ -248,7 +248,7 @@ def _check_kind(layouts: Sequence[Layout]) -> None:
 
 
 def _name(path: Path) -> str:
-    """`path` as the library takes it."""
+    """Return `path` in the form that the library accepts."""
     try:
         return path.as_posix().encode().decode()
     except UnicodeEncodeError as error:

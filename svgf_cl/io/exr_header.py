@@ -1,6 +1,7 @@
-"""The header of an OpenEXR file as bytes: the library writes pixels, and attributes are copied unchanged.
+"""Reads and writes the header of an OpenEXR file as bytes, so that attributes are copied unchanged.
 
-The library knows the types of attributes, takes some for orders, and wants every text in UTF-8; a file may have others.
+The OpenEXR library only writes the pixels: it knows only some types of attributes, acts on some of them, and needs
+every text in UTF-8, while a file may have other types and texts.
 
 Source: https://openexr.com/en/latest/OpenEXRFileLayout.html
 """
@@ -13,19 +14,19 @@ import struct
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-# An attribute's type and its value as in the file.
+# An attribute's type, and its value as bytes.
 Attribute = tuple[str, bytes]
 Attributes = dict[str, Attribute]
 
-# What says how the pixels lie in the file. The writer decides that.
+# The attributes that describe how the pixels are stored. The writer sets these.
 LAYOUT = ("channels", "chunkCount", "compression", "dataWindow", "lineOrder", "tiles", "type", "version")
-# A small picture of what the pixels no longer are.
+# A small picture of the old pixels.
 STALE = "preview"
 
-MAGIC = b"v/1\1"  # what a file begins with
-START = 8  # bytes before the first attribute: the magic number, the version
+MAGIC = b"v/1\1"  # the first bytes of a file
+START = 8  # bytes before the first attribute: the magic number and the version
 MULTIPART, LONG_NAMES = 0x1000, 0x400  # bits of the version
-SHORT = 31  # bytes of a name that are not long
+SHORT = 31  # bytes of a name, at most, without LONG_NAMES
 
 
 def read_header(path: Path) -> list[Attributes]:
@@ -34,9 +35,9 @@ def read_header(path: Path) -> list[Attributes]:
     Raises
     ------
     OSError
-        The file cannot be read.
+        If the file cannot be read.
     ValueError
-        It is no OpenEXR file, or its header is damaged.
+        If it is no OpenEXR file, or its header is damaged.
     """
     with path.open("rb") as file:
         begins = file.read(len(MAGIC))
@@ -48,12 +49,12 @@ def read_header(path: Path) -> list[Attributes]:
 
 
 def passing(part: Attributes) -> Attributes:
-    """The attributes of a part that pass through: all but `LAYOUT` and `STALE`."""
+    """Return the attributes of a part that are kept: all except `LAYOUT` and `STALE`."""
     return {name: part[name] for name in part if name not in (*LAYOUT, STALE)}
 
 
 def encoded(value: int | float | str) -> Attribute:
-    """Make an attribute of a number or a text; of a whole number that takes more than 32 bits, a text."""
+    """Return a number or a text as an attribute; a whole number with more than 32 bits becomes a text."""
     if isinstance(value, float):
         return "float", struct.pack("<f", value)
     if isinstance(value, int) and -(2**31) <= value < 2**31:
@@ -62,7 +63,7 @@ def encoded(value: int | float | str) -> Attribute:
 
 
 def decoded(attribute: Attribute) -> int | float | str | bytes:
-    """Return the number or the text that an attribute holds; what is neither, as bytes."""
+    """Return the number or the text of an attribute; for any other type, its bytes."""
     kind, value = attribute
     if kind in ("int", "float") and len(value) == 4:
         number: int | float = struct.unpack("<i" if kind == "int" else "<f", value)[0]
@@ -71,26 +72,26 @@ def decoded(attribute: Attribute) -> int | float | str | bytes:
 
 
 def copy_with_header(source: Path, target: Path, attributes: Sequence[Mapping[str, Attribute]]) -> None:
-    """Copy a file of scanlines, written in one go from the top, with a header that says something else.
+    """Copy a scanline file, written from top to bottom, with other attributes.
 
     Parameters
     ----------
     source, target : Path
     attributes : sequence of mapping
-        Those of each part, in place of all but `LAYOUT`.
+        The attributes of each part, which replace all except `LAYOUT`.
 
     Raises
     ------
     ValueError
-        The end of the source is missing.
+        If the end of the source is missing.
     """
     with source.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         parts, old_end = _parsed(content)
         header = _header(content, _merged(parts, attributes))
-        # Behind a header is written where each chunk of pixels begins. The first one begins behind these numbers.
+        # After the header comes a table of where each chunk of pixels begins. The first chunk begins after the table.
         first = _number(content, old_end, "<Q")
         places = [_number(content, place, "<Q") for place in range(old_end, first, 8)]
-        # A chunk says how many bytes follow; where there are several parts, it says first to which it belongs.
+        # A chunk begins with the number of its part, in a file of several parts, its line, and its number of bytes.
         last = max(places, default=0) + (8 if _number(content, 4, "<I") & MULTIPART else 4)
         if last + 4 + _number(content, last, "<i") != len(content):
             raise ValueError("its end is missing")
@@ -102,18 +103,18 @@ def copy_with_header(source: Path, target: Path, attributes: Sequence[Mapping[st
 
 
 def copy_in_ascii(source: Path, target: Path) -> None:
-    """Copy a file with ``?`` for each byte that is not ASCII in the texts of its header."""
+    """Copy a file, with ``?`` for each byte that is not ASCII in the texts of its header."""
     content = source.read_bytes()
     parts, end = _parsed(content)
     header = content[:end]
     for name, (kind, value) in ((name, part[name]) for part in parts for name in part if part[name][0] == "string"):
-        plain = value.decode("ascii", "replace").encode("ascii", "replace")  # of the same length
+        plain = value.decode("ascii", "replace").encode("ascii", "replace")  # the length stays the same
         header = header.replace(_packed({name: (kind, value)})[:-1], _packed({name: (kind, plain)})[:-1])
     target.write_bytes(header + content[end:])
 
 
 def _number(content: mmap.mmap, place: int, form: str) -> int:
-    """A number of a file whose end may be missing."""
+    """Read a number from a file; raise `ValueError` if the file ends before it."""
     try:
         number: int = struct.unpack_from(form, content, place)[0]
     except struct.error as error:
@@ -122,13 +123,13 @@ def _number(content: mmap.mmap, place: int, form: str) -> int:
 
 
 def _merged(parts: Sequence[Attributes], attributes: Sequence[Mapping[str, Attribute]]) -> list[Attributes]:
-    """What the parts of a new header say: how the pixels were written, and all else as wanted."""
+    """Return the attributes of a new header: `LAYOUT` from the parts as written, and all others from `attributes`."""
     layouts = ({name: part[name] for name in part if name in LAYOUT} for part in parts)
     return [{**layout, **own} for layout, own in zip(layouts, attributes, strict=True)]
 
 
 def _header(content: mmap.mmap, parts: Sequence[Attributes]) -> bytes:
-    """The header that says the same as that of `content` of the file as a whole, and of its parts this."""
+    """Return a header with the version of `content` and with these parts."""
     magic, version = struct.unpack_from("<II", content)
     if any(len(text.encode()) > SHORT for part in parts for name, (kind, _) in part.items() for text in (name, kind)):
         version |= LONG_NAMES
@@ -136,7 +137,7 @@ def _header(content: mmap.mmap, parts: Sequence[Attributes]) -> bytes:
 
 
 def _parsed(content: mmap.mmap | bytes) -> tuple[list[Attributes], int]:
-    """The attributes of each part, and where the header ends."""
+    """Return the attributes of each part, and where the header ends."""
     if len(content) < START:
         raise ValueError("expected a complete header, got one that is too short")
     multipart = struct.unpack_from("<I", content, 4)[0] & MULTIPART
@@ -149,7 +150,7 @@ def _parsed(content: mmap.mmap | bytes) -> tuple[list[Attributes], int]:
 
 
 def _parsed_part(content: mmap.mmap | bytes, position: int) -> tuple[Attributes, int]:
-    """The attributes from `position` on, and where they end."""
+    """Return the attributes from `position` on, and where they end."""
     part: Attributes = {}
     while content[position : position + 1] != b"\0":
         name, position = text_at(content, position)
@@ -168,7 +169,7 @@ def _parsed_part(content: mmap.mmap | bytes, position: int) -> tuple[Attributes,
 
 
 def text_at(content: mmap.mmap | bytes, position: int) -> tuple[str, int]:
-    """The text that begins at `position`, and where it ends."""
+    """Return the text that begins at `position`, and where it ends."""
     end = content.find(b"\0", position)
     if end < 0:
         raise ValueError("expected a complete header, got one that is cut off")
@@ -176,7 +177,7 @@ def text_at(content: mmap.mmap | bytes, position: int) -> tuple[str, int]:
 
 
 def _packed(part: Attributes) -> bytes:
-    """The attributes of a part as in a file."""
+    """Return the attributes of a part as bytes."""
     return (
         b"".join(
             b"%s\0%s\0%s%s" % (name.encode(), kind.encode(), struct.pack("<i", len(value)), value)

@@ -1,4 +1,4 @@
-"""The layout of the pixels, from the header of an OpenEXR file: windows, channels and types, compression, view.
+"""Reads the layout of pixels from an OpenEXR header: windows, channels with their types, compression, and view.
 
 Source: https://openexr.com/en/latest/OpenEXRFileLayout.html
 """
@@ -16,7 +16,7 @@ from svgf_cl.io.exr_header import Attributes, text_at
 from svgf_cl.io.image import COMPRESSIONS, Windows
 from svgf_cl.io.window import Window
 
-# Pixel types by their numbers in the list of channels.
+# Pixel types, by their numbers in the list of channels.
 TYPES = (np.dtype(np.uint32), np.dtype(np.float16), np.dtype(np.float32))
 
 
@@ -30,7 +30,7 @@ class Channel:
 
 @dataclass(frozen=True)
 class Layout:
-    """How the pixels of a part lie.
+    """The layout of a part's pixels.
 
     Parameters
     ----------
@@ -39,9 +39,9 @@ class Layout:
     compression : str
         One of `COMPRESSIONS`.
     name, view : str
-        Those of the part; empty where it has none.
+        The part's name and view; empty if it has none.
     is_deep : bool
-        Whether a pixel has any number of samples.
+        Whether pixels have varying numbers of samples.
     """
 
     windows: Windows
@@ -53,12 +53,12 @@ class Layout:
 
     @property
     def size(self) -> int:
-        """Bytes of pixels, not compressed."""
+        """Bytes of the pixels without compression."""
         return self.windows.data.area * sum(channel.dtype.itemsize for channel in self.channels.values())
 
 
 def layout_of(part: Attributes) -> Layout:
-    """Read how the pixels of a part lie from its attributes; `ValueError` where one is missing or makes no sense."""
+    """Return the layout of a part from its attributes; raise `ValueError` if one is missing or invalid."""
     (aspect,) = _numbers(part, "pixelAspectRatio", "float", "<f")
     (compression,) = _numbers(part, "compression", "compression", "<B")
     if compression >= len(COMPRESSIONS):
@@ -77,7 +77,7 @@ def layout_of(part: Attributes) -> Layout:
 
 
 def _numbers(part: Attributes, name: str, kind: str, form: str) -> tuple[Any, ...]:
-    """The numbers of an attribute that must be there and of that type."""
+    """Return the numbers of an attribute; raise `ValueError` if it is missing or of another type."""
     found, value = part.get(name, ("none", b""))
     if found != kind or len(value) != struct.calcsize(form):
         raise ValueError(
@@ -92,13 +92,13 @@ def _window(part: Attributes, name: str) -> Window:
 
 
 def _text(part: Attributes, name: str) -> str:
-    """The text of an attribute; empty where it is not there."""
+    """Return the text of an attribute; empty if it is missing."""
     kind, value = part.get(name, ("", b""))
     return value.decode() if kind == "string" else ""
 
 
 def _channels(part: Attributes) -> Iterator[tuple[str, Channel]]:
-    """The channels that a part lists."""
+    """Yield the name and the type of each channel of a part."""
     kind, listed = part.get("channels", ("none", b""))
     position = 0
     while kind == "chlist" and listed[position : position + 1] not in (b"", b"\0"):

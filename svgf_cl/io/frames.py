@@ -1,7 +1,8 @@
-"""Frames and pictures as OpenEXR files: one file a frame, float32, lossless (zip), one named channel a component.
+"""Reads and writes frames as OpenEXR files: one file for each frame, one float32 channel for each component.
 
-The channels of each field are in docs/conventions.md. A plain picture (denoised, reference) has ``R G B`` alone. Frames
-are called ``frame.0000.exr``, references ``reference.0000.exr``; the number is the frame's place in its sequence.
+Compression is lossless (zip). docs/conventions.md lists the channels of each field. A plain picture (denoised, or a
+reference) has only ``R G B``. Frames are called ``frame.0000.exr``, and references ``reference.0000.exr``; the number
+is the frame's position in its sequence.
 """
 
 from __future__ import annotations
@@ -17,37 +18,37 @@ from svgf_cl.io.image import Plane
 from svgf_cl.io.readers.own import CHANNEL_NAMES, MAX_ID, OWN
 from svgf_cl.io.reading import ReadAs, Reading
 
-ALPHA_NAME = "A"  # of color's fourth channel; written with a frame, not read into one, as files keep what is not read
-MADE_FROM = "svgf_cl:made_from"  # the attribute that tells what a frame was made from
+ALPHA_NAME = "A"  # color's fourth channel; it is written but not read, as denoised files keep all channels anyway
+MADE_FROM = "svgf_cl:made_from"  # the attribute that says what a frame was made from
 
 
 def frame_path(folder: Path, number: int, stem: str = "frame") -> Path:
-    """Name the file of frame `number` in `folder`: ``frame.0007.exr``."""
+    """Return the path of frame `number` in `folder`, such as ``frame.0007.exr``."""
     return folder / f"{stem}.{number:04d}.exr"
 
 
 def write_frame(path: Path, frame: Frame, made_from: str = "") -> None:
-    """Write a frame of numpy arrays as one EXR file, whole or not at all.
+    """Write a frame of numpy arrays as one EXR file, completely or not at all.
 
     Parameters
     ----------
     path : Path
     frame : Frame
     made_from : str
-        What stands for all that the frame depends on, for `kept_frame` to know it by.
+        A text that changes with everything that the frame depends on; `kept_frame` compares it.
 
     Raises
     ------
     FrameError
-        Where the frame is not consistent in itself.
+        If the frame is not consistent.
     FileError
-        Where an id is greater than 2**24, or the file cannot be written.
+        If an id is greater than 2**24, or the file cannot be written.
     """
     write_channels(path, channels_of(path, frame), {MADE_FROM: made_from} if made_from else {})
 
 
 def kept_frame(path: Path, made_from: str) -> Frame | None:
-    """Read the frame that an earlier run made from the same and wrote whole; None where there is no such file."""
+    """Read the frame that an earlier run wrote with the same `made_from`; None if there is no such complete file."""
     try:
         return read_frame(path) if read_attribute(path, MADE_FROM) == made_from else None
     except FileError:
@@ -55,7 +56,7 @@ def kept_frame(path: Path, made_from: str) -> Frame | None:
 
 
 def channels_of(path: Path, frame: Frame) -> dict[str, Plane]:
-    """Take a frame of numpy arrays apart into the channels of file `path`; errors as of `write_frame`."""
+    """Return the channels of a frame of numpy arrays for the file `path`; errors as in `write_frame`."""
     frame.check(frame.shape)
     planes: dict[str, Plane] = {}
     for field, value in frame.present().items():
@@ -68,12 +69,12 @@ def channels_of(path: Path, frame: Frame) -> dict[str, Plane]:
 
 
 def read_frame(path: Path) -> Frame:
-    """Read a frame that `write_frame`, or a renderer with the same channel names, wrote: all its pixels.
+    """Read a frame, with all its pixels, from a file of `write_frame` or of a renderer with the same channel names.
 
     Raises
     ------
     FileError
-        Where the file is missing or not an EXR file, or where a field is absent, incomplete or of a wrong value.
+        If the file is missing or not an EXR file, or a field is missing, incomplete or invalid.
     """
     image = read_image(path)
     return Reading(path, image, ReadAs(OWN.name)).frame(path, image.planes)

@@ -1,4 +1,4 @@
-"""An image file in memory: parts with channels of their own pixel types, where they lie, and what else it says."""
+"""`Image`: an image file in memory, with its parts, channels, windows and attributes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from svgf_cl.io.window import Window
 
 Plane = npt.NDArray[np.float16] | npt.NDArray[np.float32] | npt.NDArray[np.uint32]
 
-# By their numbers in a file.
+# Compressions, by their numbers in a file.
 COMPRESSIONS = (
     *("none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"),
     *("htj2k256", "htj2k32"),
@@ -24,7 +24,7 @@ LOSSLESS = frozenset({"none", "rle", "zips", "zip", "piz", "htj2k256", "htj2k32"
 
 @dataclass(frozen=True)
 class Windows:
-    """Where the pixels of a file lie: all it has, those that are the picture, and the width of one over its height."""
+    """The windows of a file (its pixels, and the picture), and the width of a pixel over its height."""
 
     data: Window
     display: Window
@@ -38,16 +38,16 @@ class Part:
     Parameters
     ----------
     planes : dict of str to (H, W) float16, float32 or uint32
-        The channels, in their types in the file. No two parts that are read have one of the same name.
+        The channels, with the types that they have in the file. Parts that are not elsewhere have no name in common.
     attributes : dict of str to Attribute
-        All that the header says and that is not how pixels are stored.
+        All attributes of the header, except those about how pixels are stored.
     compression : str
         One of `COMPRESSIONS`.
     stored : mapping of str to str
-        Channels whose name in the file is another, as other parts have that one too.
+        For channels that were renamed because several parts have the same name: the name in the file.
     elsewhere : Window, optional
-        The data window of a part that is of another view than the image, or lies in another place: it passes through,
-        but its channels are not the image's.
+        The data window of a part that has another view or other windows than the image. Such a part is kept, but its
+        channels are not the image's.
     """
 
     planes: Mapping[str, Plane]
@@ -58,13 +58,13 @@ class Part:
 
     @property
     def lossless_compression(self) -> str:
-        """How the part is written: as it was where that keeps every bit, else by zip."""
-        # PXR24 cuts 32-bit floats to 24 bits, and keeps all else.
+        """The compression to write the part with: its own if that is lossless, else zip."""
+        # PXR24 reduces 32-bit floats to 24 bits, and is lossless for other types.
         keeps = self.compression == "pxr24" and all(plane.dtype != np.float32 for plane in self.planes.values())
         return self.compression if keeps or self.compression in LOSSLESS else "zip"
 
     def same_as(self, other: Part) -> bool:
-        """Whether the other part holds the same, bit by bit, and is written in the same way."""
+        """Whether the other part has the same content, bit by bit, and is written in the same way."""
         return (
             (self.attributes, self.elsewhere) == (other.attributes, other.elsewhere)
             and self.lossless_compression == other.lossless_compression
@@ -78,26 +78,26 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Image:
-    """All of a file; the windows are those of its first part."""
+    """The content of a file; the windows are those of its first part."""
 
     windows: Windows
     parts: tuple[Part, ...]
 
     @property
     def planes(self) -> dict[str, Plane]:
-        """Every channel of the parts that are not elsewhere."""
+        """All channels of the parts that are not elsewhere."""
         return {name: plane for part in self.parts if not part.elsewhere for name, plane in part.planes.items()}
 
     @property
     def chromaticities(self) -> tuple[float, ...] | None:
-        """The x and y of red, green, blue and white, where the file says them."""
+        """The x and y of red, green, blue and white, if the file has them."""
         kind, value = self.parts[0].attributes.get("chromaticities", ("", b""))
         return struct.unpack("<8f", value) if kind == "chromaticities" and len(value) == 32 else None
 
     def with_planes(self, planes: Mapping[str, Plane], beside: str | None = None) -> Image:
-        """The same with these channels in place of those of their names.
+        """Return the image with these channels, which replace channels of the same names.
 
-        New ones go to the part that has the channel `beside`, the first part where none is given.
+        New channels go to the part that has the channel `beside`, or to the first part.
         """
         new = planes.keys() - self.planes.keys()
         home = self._part_of(beside)
@@ -109,16 +109,16 @@ class Image:
         return replace(self, parts=tuple(parts))
 
     def with_planes_alone(self, planes: Mapping[str, Plane]) -> Image:
-        """The same with no other channels than these, in one part: the one that had the first of them."""
+        """Return the image with only these channels, in one part: the one that had the first of them."""
         home = self._part_of(next(iter(planes)))
         return replace(self, parts=(Part(dict(planes), home.attributes, home.compression),))
 
     def _part_of(self, channel: str | None) -> Part:
-        """The part that has a channel; the first one if none has."""
+        """Return the part that has a channel, or the first part if none has it."""
         return next((part for part in self.parts if channel in part.planes and not part.elsewhere), self.parts[0])
 
     def without(self, attribute: str) -> Image:
-        """The same without an attribute."""
+        """Return the image without an attribute."""
         parts = (
             replace(part, attributes={name: part.attributes[name] for name in part.attributes if name != attribute})
             for part in self.parts
@@ -126,7 +126,7 @@ class Image:
         return replace(self, parts=tuple(parts))
 
     def same_as(self, other: Image) -> bool:
-        """Whether the other image holds the same, bit by bit."""
+        """Whether the other image has the same content, bit by bit."""
         return (
             self.windows == other.windows
             and len(self.parts) == len(other.parts)
@@ -135,7 +135,7 @@ class Image:
 
 
 def new_image(planes: Mapping[str, Plane], attributes: Attributes) -> Image:
-    """An image of one part with these channels, (H, W) each, that fill its display window."""
+    """Return an image of one part with these channels, (H, W) each, which fill its display window."""
     height, width = next(iter(planes.values())).shape
     window = Window(0, 0, width, height)
     box = "box2i", struct.pack("<4i", 0, 0, width - 1, height - 1)

@@ -1,4 +1,4 @@
-"""Channel names: which of a file's channels are its picture, and what to call those that several parts have."""
+"""Channel names: finds a file's picture channels, and renames channels that several parts have."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from collections.abc import Collection, Iterable, Sequence
 from svgf_cl.frame import CHANNELS
 
 RGB = ("R", "G", "B")
-# What tells nothing without a layer: that of a part is called like the part.
+# Names of components, which need a layer's name; in a file of several parts they get the part's name.
 ORDER = "RGBAXYZ"
 LETTERS = frozenset(ORDER)
-# How else renderers call the components of a layer.
+# Renderers' names of the components of a colour.
 COMPONENTS = {"r": 0, "red": 0, "g": 1, "green": 1, "b": 2, "blue": 2}
-# How renderers call the layer that is the picture, whatever comes before in names such as ViewLayer.Combined.
+# Renderers' names of the layer that is the picture: the last word of a name such as ViewLayer.Combined.
 PICTURES = ("rgba", "rgb", "beauty", "combined", "color", "colour", "c", "ci", "main")
 
 
 def picture_channels(names: Collection[str]) -> tuple[str, ...]:
     """Find the red, green and blue channel of the picture among the channels of a file.
 
-    It is ``R G B``; else the layer named like a picture, such as ``Beauty.R G B``; else the only layer of colours; else
-    ``Y``, a grey picture.
+    The picture is ``R G B``; else the layer with a picture's name, such as ``Beauty.R G B``; else the only layer with
+    colours; else ``Y``, a grey picture.
 
     Raises
     ------
     ValueError
-        There is none, or more than one.
+        If there is none, or more than one.
     """
     layers = colour_layers(names)
     if "" in layers:
@@ -44,7 +44,7 @@ def picture_channels(names: Collection[str]) -> tuple[str, ...]:
 
 
 def colour_layers(names: Collection[str]) -> dict[str, tuple[str, ...]]:
-    """Find the layers that have red, green and blue: their channels by the layer's name, which may be empty."""
+    """Return the red, green and blue channels of each layer that has them, by the layer's name, which may be empty."""
     layers: dict[str, dict[int, str]] = {}
     for name in names:
         layer, _, component = name.rpartition(".")
@@ -54,12 +54,12 @@ def colour_layers(names: Collection[str]) -> dict[str, tuple[str, ...]]:
 
 
 def is_picture_name(name: str) -> bool:
-    """Whether a layer or part of that name is a picture."""
+    """Whether a layer or part of this name is a picture."""
     return _last(name) in PICTURES
 
 
 def in_usual_order(names: Iterable[str]) -> list[str]:
-    """Sort channels by layer, and those of a layer as people name them: ``R G B A``, ``X Y Z``, then all others."""
+    """Sort channels by layer, and within a layer in the usual order: ``R G B A``, ``X Y Z``, then all others."""
 
     def place(name: str) -> tuple[str, int, str]:
         layer, _, component = name.rpartition(".")
@@ -69,25 +69,25 @@ def in_usual_order(names: Iterable[str]) -> list[str]:
 
 
 def unique_names(parts: Sequence[tuple[str, Collection[str]]]) -> list[dict[str, str]]:
-    """Name the channels of a file so that no two are called the same.
+    """Give the channels of a file different names.
 
-    In a file of several parts the part's name comes before ``R G B A X Y Z``, as a layer's would, and before any other
-    name that several parts have. The channels of the part that is the picture stay as they are.
+    In a file of several parts, the part's name is put before ``R G B A X Y Z``, like a layer's name, and before any
+    other name that several parts have. The part that is the picture keeps its names.
 
     Parameters
     ----------
     parts : sequence of (str, collection of str)
-        The name of each part and those of its channels.
+        The name of each part, and the names of its channels.
 
     Returns
     -------
     list of dict
-        For each part, from a channel's name in the file to the one it goes by.
+        For each part, the new names of its channels by their names in the file.
 
     Raises
     ------
     ValueError
-        More than one part could be the picture, or two names stay the same.
+        If more than one part could be the picture, or two names are still the same.
     """
     counts = Counter(name for _, names in parts for name in names)
     pictures = main = [part for part, names in parts if {*RGB} <= {*names}]
@@ -111,5 +111,5 @@ def unique_names(parts: Sequence[tuple[str, Collection[str]]]) -> list[dict[str,
 
 
 def _last(layer: str) -> str:
-    """The last word of a layer's name, in small letters."""
+    """Return the last word of a layer's name, in small letters."""
     return layer.rpartition(".")[2].casefold()

@@ -1,4 +1,4 @@
-"""Channels that are not read, though they look like a field: renderers have many names for each."""
+"""Finds channels that look like a missing field, because renderers have many names for each field."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable
 
 from svgf_cl.io.layers import PICTURES
 
-# How renderers call the layer of a field, in small letters and without spaces and signs; the likeliest first.
+# Renderers' names of the layer of each field, in small letters without spaces and signs; the most likely first.
 LAYERS: dict[str, tuple[str, ...]] = {
     "color": (*PICTURES, "r", "g", "b"),
     "albedo": (
@@ -34,11 +34,11 @@ LAYERS: dict[str, tuple[str, ...]] = {
     "direct": ("direct", "directlight", "directlighting", "directillumination"),
     "indirect": ("indirect", "indirectlight", "indirectlighting", "indirectillumination", "gi", "globalillumination"),
 }
-# What may stand behind the layer's name; alpha alone tells nothing of a layer.
+# Names of components after the layer's name. A layer that has only alpha does not count.
 COMPONENTS = ("r", "g", "b", "a", "x", "y", "z", "w", "u", "v", "t", "i", "red", "green", "blue", "alpha")
 ALPHA = ({"a"}, {"alpha"})
-NO_DEPTH = ("mist",)  # though it has the component Z alone
-SHOWN = 2  # layers of a field
+NO_DEPTH = ("mist",)  # layers that are no depth, though they have only the component Z
+SHOWN = 2  # layers that are shown for a field
 
 
 def look_alikes(channels: Iterable[str], fields: Collection[str]) -> dict[str, list[str]]:
@@ -47,14 +47,14 @@ def look_alikes(channels: Iterable[str], fields: Collection[str]) -> dict[str, l
     Parameters
     ----------
     channels : iterable of str
-        Those of a file that are not read.
+        The channels of a file that are not read.
     fields : collection of str
         The fields that are missing.
 
     Returns
     -------
     dict of str to list of str
-        For each of `fields` that has any the channels, put as by `grouped`; the likeliest first.
+        The channels for each of `fields` that has any, as texts of `grouped`; the most likely first.
     """
     layers: dict[str, list[str]] = {}
     for channel in channels:
@@ -65,7 +65,7 @@ def look_alikes(channels: Iterable[str], fields: Collection[str]) -> dict[str, l
         word = re.sub(r"[\W_]", "", layer.rpartition(".")[2].casefold())
         for field in fields:
             known = LAYERS.get(field, (field,))
-            if components == {"z"} and word not in NO_DEPTH:  # the z of a position has x and y beside it
+            if components == {"z"} and word not in NO_DEPTH:  # a position would have x and y as well
                 known = (*known, word) if field == "depth" else ()
             if word in known and components not in ALPHA:
                 found.setdefault(field, []).append((known.index(word), grouped(names)))
@@ -73,13 +73,13 @@ def look_alikes(channels: Iterable[str], fields: Collection[str]) -> dict[str, l
 
 
 def split(channel: str) -> tuple[str, str]:
-    """Take a channel's name apart into that of its layer and that of the component, which may be empty."""
+    """Split a channel's name into its layer's name and its component's name, which may be empty."""
     layer, dot, component = channel.rpartition(".")
     return (layer, component) if dot and component.casefold() in COMPONENTS else (channel, "")
 
 
 def grouped(channels: Iterable[str]) -> str:
-    """Write channels, each layer's name once: ``normal.X Y Z``."""
+    """Return channels as a text that has each layer's name once: ``normal.X Y Z``."""
     words, last = [], None
     for channel in channels:
         layer, component = split(channel)
@@ -89,7 +89,7 @@ def grouped(channels: Iterable[str]) -> str:
 
 
 def advice(channels: Iterable[str], wanted: dict[str, tuple[str, ...]]) -> str:
-    """Say which channels look like fields that are missing, and how to have them read; nothing where none does.
+    """Return which channels look like missing fields, and the options to read them; empty if none does.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def advice(channels: Iterable[str], wanted: dict[str, tuple[str, ...]]) -> str:
 
 
 def spelled(text: str) -> str:
-    """The name of the layer that `grouped` wrote, as one writes it in a shell."""
+    """Return the layer's name in a text of `grouped`, quoted for a shell if necessary."""
     first = text if text.count(" ") == text.rpartition(".")[0].count(" ") else text[: text.rindex(".") + 2]
     layer = split(first)[0]
     return f"'{layer}'" if " " in layer else layer

@@ -1,6 +1,6 @@
-"""Threads beside the caller's: frames are read before they are asked for, and written while the next are filtered.
+"""Runs tasks in threads: frames are read in advance, and written while the next ones are filtered.
 
-What reads and writes files lets other threads run while it compresses or waits for the disk.
+The code that reads and writes files lets other threads run while it compresses or waits for the disk.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ Result = TypeVar("Result")
 def in_order(function: Callable[[Item], Result], items: Iterable[Item], count: int) -> Iterator[Result]:
     """Apply a function to items, in up to `count` threads at once, and yield the results in the order of the items.
 
-    What the function raises is raised here, in its place among the results. Where that, or the items, or the caller end
-    it early, each item that was taken is still done, and no other is taken.
+    An error of the function is raised here, in the place of its result. If the iteration ends early, items that were
+    already taken are still processed, and no others are taken.
 
     Parameters
     ----------
     function : callable
         May be called from several threads at once.
     items : iterable
-        Used by the caller's thread.
+        Iterated over in the caller's thread.
     count : int
-        At least 1. As many results are in memory, beside the one that the caller has.
+        At least 1. Up to this many results are in memory, in addition to the one that the caller has.
     """
     source = iter(items)
     pool = ThreadPoolExecutor(count)
@@ -39,4 +39,4 @@ def in_order(function: Callable[[Item], Result], items: Iterable[Item], count: i
             waiting.extend(pool.submit(function, item) for item in islice(source, 1))
             yield result
     finally:
-        pool.shutdown()  # what was taken from the items is done
+        pool.shutdown()  # waits for the items that were taken

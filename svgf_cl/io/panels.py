@@ -1,4 +1,4 @@
-"""Pictures that show what was gained: labelled panels in a row or a sheet, a magnified piece, an animated preview."""
+"""Makes pictures to compare results: labelled panels in a row or sheet, a magnified piece, an animated preview."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ GAP = 4
 
 
 def write_preview(path: Path, pictures: Iterable[Bytes], fps: float = 12.0) -> None:
-    """Write (H, W, 3) 8-bit pictures as a looping animated WebP, whole or not at all."""
+    """Write (H, W, 3) 8-bit pictures as a looping animated WebP, completely or not at all."""
     first, *rest = (Image.fromarray(picture) for picture in pictures)
     with written_whole(path) as aside:
         first.save(
@@ -27,7 +27,7 @@ def write_preview(path: Path, pictures: Iterable[Bytes], fps: float = 12.0) -> N
 
 
 def side_by_side(panels: Mapping[str, Bytes]) -> Bytes:
-    """Lay panels of one size in a row, each with its label above it."""
+    """Put panels of one size in a row, each below its label."""
     height, width, _ = next(iter(panels.values())).shape
     sheet = Image.new("RGB", (len(panels) * (width + GAP) - GAP, height + LABEL_HEIGHT), "black")
     draw = ImageDraw.Draw(sheet)
@@ -40,7 +40,7 @@ def side_by_side(panels: Mapping[str, Bytes]) -> Bytes:
 
 
 def contact_sheet(panels: Mapping[str, Bytes]) -> Bytes:
-    """Lay panels of one size in rows of about as many as there are rows, each with its label above it."""
+    """Put panels of one size in a sheet with about as many rows as columns, each below its label."""
     labels, columns = list(panels), math.ceil(math.sqrt(len(panels)))
     starts = range(0, len(labels), columns)
     rows = [side_by_side({label: panels[label] for label in labels[start : start + columns]}) for start in starts]
@@ -48,7 +48,7 @@ def contact_sheet(panels: Mapping[str, Bytes]) -> Bytes:
 
 
 def still(panels: Mapping[str, Bytes]) -> Bytes:
-    """Lay labelled panels in a row, and below each a magnified piece of it: where the last two differ most."""
+    """Put labelled panels in a row, and below each a magnified piece: the one where the last two differ most."""
     *_, (_, tested), (_, reference) = panels.items()
     piece = worst_piece(tested, reference)
     crops = {label: magnified(picture[piece], picture.shape) for label, picture in panels.items()}
@@ -57,7 +57,7 @@ def still(panels: Mapping[str, Bytes]) -> Bytes:
 
 
 def worst_piece(tested: Bytes, reference: Bytes, pieces: int = 4) -> tuple[slice, slice]:
-    """Choose the tile, of ``pieces * pieces`` equal ones, with the greatest squared error: the honest place to look."""
+    """Return the tile, of ``pieces * pieces`` equal ones, with the greatest squared error."""
     height, width = (max(1, n // pieces) for n in tested.shape[:2])
     rows, columns = (range(n // size) for n, size in zip(tested.shape, (height, width), strict=False))
     error = np.square(tested.astype(np.float64) - reference).sum(axis=-1)
@@ -66,12 +66,12 @@ def worst_piece(tested: Bytes, reference: Bytes, pieces: int = 4) -> tuple[slice
 
 
 def _font(label: str, width: int) -> ImageFont.ImageFont | ImageFont.FreeTypeFont:
-    """The usual font, or a smaller one in which `label` fits into `width` pixels."""
+    """Return the usual font, or a smaller one if `label` would not fit into `width` pixels."""
     length = ImageFont.load_default(FONT_SIZE).getlength(label)
-    fitting = 0.95 * width / max(length, 1.0) * FONT_SIZE  # a little less: letters do not shrink evenly
+    fitting = 0.95 * width / max(length, 1.0) * FONT_SIZE  # a little less, as letters do not shrink evenly
     return ImageFont.load_default(max(1.0, min(FONT_SIZE, fitting)))
 
 
 def magnified(picture: Bytes, shape: tuple[int, ...]) -> Bytes:
-    """Blow `picture` up to the height and width of `shape`, each pixel a crisp block."""
+    """Enlarge `picture` to the height and width of `shape`, with each pixel as a sharp block."""
     return np.asarray(Image.fromarray(picture).resize((shape[1], shape[0]), Image.Resampling.NEAREST))

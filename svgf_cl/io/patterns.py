@@ -1,4 +1,4 @@
-"""Names of numbered files as one writes them: ``shot/beauty.####.exr``, ``shot/beauty.%04d.exr``, ``shot/*.exr``."""
+"""Patterns of numbered files: ``shot/beauty.####.exr``, ``shot/beauty.%04d.exr``, ``shot/*.exr``."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from pathlib import Path
 from svgf_cl.errors import FileError, SvgfError, shown
 from svgf_cl.io.atomic import entries, require
 
-# Where the number goes: a run of #, or %d as of C.
+# The place of the number: a run of #, or %d as in C.
 NUMBER = re.compile(r"#+|%(?:0(?P<width>[1-9]))?d")
 GLOB = re.compile(r"[*?\[]")
 RANGE = re.compile(r"(?P<first>-?\d{1,9})(?:-(?P<last>-?\d{1,9}))?", re.ASCII)
 
 
 def expanded(path: Path) -> list[Path]:
-    """The files that a name stands for: those that fit its pattern; itself where it has none.
+    """Return the files that match a pattern; a path without a pattern stands for itself.
 
     Raises
     ------
     FileError
-        No file fits the pattern, or it has more than one number.
+        If no file matches the pattern, or it has more than one number.
     """
     if os.path.exists(path) or not (NUMBER.search(path.name) or GLOB.search(path.name)):
         return [path]
     require(path.parent)
     if NUMBER.search(path.name):
         head, tail = around_number(path)
-        minus = "-?" if not head or head[-1] in "._" else ""  # else it belongs to the name
+        minus = "-?" if not head or head[-1] in "._" else ""  # else a minus belongs to the name
         fits = re.compile(f"{re.escape(head)}{minus}[0-9]+{re.escape(tail)}")
         found = [entry for entry in entries(path.parent) if fits.fullmatch(entry.name)]
     else:
@@ -39,17 +39,17 @@ def expanded(path: Path) -> list[Path]:
 
 
 def has_number(path: Path) -> bool:
-    """Whether a name has a place for a number, and is not that of a folder which is there."""
+    """Whether a name has a place for a number, and is no existing folder."""
     return bool(NUMBER.search(path.name)) and not path.is_dir()
 
 
 def numbered(pattern: Path, number: int) -> Path:
-    """The EXR file that a pattern means for a number, padded as the pattern says.
+    """Return the EXR file of a pattern and a number, padded as in the pattern.
 
     Raises
     ------
     FileError
-        The pattern has more than one number, or does not end in ``.exr``.
+        If the pattern has more than one number, or does not end in ``.exr``.
     """
     head, tail = around_number(pattern)
     if not tail.lower().endswith(".exr"):
@@ -60,7 +60,7 @@ def numbered(pattern: Path, number: int) -> Path:
 
 
 def around_number(pattern: Path) -> tuple[str, str]:
-    """What stands before and behind the number."""
+    """Return the texts before and after the number."""
     parts = NUMBER.sub("\0", pattern.name).split("\0")
     if len(parts) != 2:
         raise FileError(f"{pattern}: expected one number, as #### or %04d, got {len(parts) - 1}")

@@ -1,4 +1,4 @@
-"""Pictures as OpenEXR files: plain ones, and denoised ones that keep what else the file of their frame holds."""
+"""Reads and writes pictures as OpenEXR files: plain ones, and denoised ones that keep their source's other content."""
 
 from __future__ import annotations
 
@@ -19,47 +19,47 @@ Picture = npt.NDArray[np.float32]
 
 
 def picture_file(picture: Picture) -> Image:
-    """Make the file of a (H, W, 3) linear picture, which has ``R G B`` alone."""
+    """Return the file of a (H, W, 3) linear picture, which has only ``R G B``."""
     return new_image(channels(picture), {})
 
 
 def denoised_file(
     planes: Mapping[str, Picture], source: Image, *, beside: str | None = None, plain: bool = False
 ) -> Image:
-    """Make the file of what was denoised of a frame.
+    """Return the file of a denoised frame.
 
     Parameters
     ----------
     planes : mapping of str to (H, W) float32
-        Channels that were made.
+        The denoised channels.
     source : Image
-        The file of the frame, of the same data window: what it says, and its other channels, go along.
+        The file of the frame, with the same data window. Its attributes and its other channels are kept.
     beside : str, optional
-        The channel to whose part of the file those go that it does not have yet; by default to the first part.
+        New channels go to the part that has this channel; by default to the first part.
     plain : bool
-        No channels of the source.
+        Leave out the channels of the source.
     """
     kept = source.without(MADE_FROM)
     return kept.with_planes_alone(planes) if plain else kept.with_planes(planes, beside)
 
 
 def channels(picture: Picture, names: Sequence[str] = RGB) -> dict[str, Picture]:
-    """Take a (H, W, 3) picture apart into its channels."""
+    """Return the channels of a (H, W, 3) picture, by name."""
     return dict(zip(names, np.moveaxis(picture, -1, 0), strict=True))
 
 
 def write_picture(path: Path, picture: npt.ArrayLike) -> None:
-    """Write a (H, W, 3) linear picture as a plain ``R G B`` EXR file, whole or not at all."""
+    """Write a (H, W, 3) linear picture as a plain ``R G B`` EXR file, completely or not at all."""
     write_image(path, picture_file(np.asarray(picture, np.float32)))
 
 
 def is_picture(path: Path, picture: Picture) -> bool:
-    """Whether the file at `path` holds this (H, W, 3) picture and nothing else, bit by bit."""
+    """Whether the file at `path` contains exactly this (H, W, 3) picture, bit by bit."""
     return holds(path, picture_file(picture))
 
 
 def holds(path: Path, image: Image) -> bool:
-    """Whether the file at `path` holds this image, bit by bit."""
+    """Whether the file at `path` contains exactly this image, bit by bit."""
     try:
         return read_image(path).same_as(image)
     except FileError:
@@ -67,14 +67,14 @@ def holds(path: Path, image: Image) -> bool:
 
 
 def read_picture(path: Path) -> Picture:
-    """Read the picture of an EXR file, whatever else it holds, as (H, W, 3) float32 on its display window.
+    """Read the picture of an EXR file as (H, W, 3) float32 on its display window.
 
-    Which channels these are says `picture_channels`. Pixels of the display window that the file lacks are black.
+    `picture_channels` finds its channels. Pixels of the display window that the file lacks are black.
 
     Raises
     ------
     FileError
-        As of `read_image`, and where there is no picture or more than one.
+        As in `read_image`, and if there is no picture or more than one.
     """
     image = read_image(path)
     planes = image.planes

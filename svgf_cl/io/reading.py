@@ -1,4 +1,4 @@
-"""`Reading`: how the files of a shot become frames, settled by its first file and by what the user says."""
+"""`Reading`: turns the files of a shot into frames, in the way that its first file and the user's options determine."""
 
 from __future__ import annotations
 
@@ -22,31 +22,32 @@ from svgf_cl.io.readers.own import CHANNEL_NAMES, OWN, needed
 from svgf_cl.io.readers.passes import by_view_layer, called, place, plain
 from svgf_cl.io.readers.reader import HELPERS, Found, LightPasses, Pass, Reader, Source, Values
 
-# Components that a field has at least.
+# Least number of components of each field.
 SIZES = {field: max(1, min(sizes)) for field, sizes in CHANNELS.items()} | HELPERS
 
 CAMERAS = "give the camera of each frame in cameras.json beside the frames, or with --cameras FILE"
-STILL = "if the camera and all things stand still, give --still-camera"
+STILL = "if neither the camera nor any object moves, give --still-camera"
 
 
 @dataclass(frozen=True)
 class ReadAs:
-    """What a user says of files, where they do not tell it themselves, or tell something else.
+    """The user's options for reading files, which add to the files' own information or replace it.
 
     Parameters
     ----------
     format : str, optional
-        The name of a reader; by default it is told from the first file.
+        The name of a reader; by default the first file decides.
     view_layer : str, optional
-        Which one to read of a file that has several.
+        The view layer to read, if a file has several.
     passes : mapping of str to str
-        Fields, or `HELPERS`, to the pass or channel that holds them.
+        The pass or channel for a field, or for one of `HELPERS`.
     motion_scale : (float, float)
-        What x and y of motion are multiplied by; -1 turns an axis round.
+        Factors for x and y of motion; -1 reverses an axis.
     cameras : mapping of int to Camera, or Path
-        That of each frame by its number; by default they come from the files' headers.
+        The camera of each frame, by the frame's number, or a file of cameras; by default they come from the files'
+        headers.
     still_camera : bool
-        Take all motion to be 0 where nothing tells it.
+        Set all motion to 0 if files have none and it cannot be computed.
     """
 
     format: str | None = None
@@ -69,11 +70,11 @@ class LightPass:
     Parameters
     ----------
     channels : tuple of str
-        Its red, green and blue.
+        Its red, green and blue channel.
     factor : tuple of str
-        Channels of the pass that it is to be multiplied by; none where it is light as it is.
+        The channels of the pass to multiply it by; empty if it needs no factor.
     kind : readers.reader.LightPasses
-        What is known of it.
+        The reader's description of it.
     """
 
     channels: tuple[str, ...]
@@ -87,14 +88,14 @@ class LightPass:
 
 
 class Reading:
-    """How the files of a shot become frames.
+    """Turns the files of a shot into frames.
 
     Parameters
     ----------
     path : Path
         The first file, for errors.
     image : Image
-        What it holds.
+        Its content.
     how : ReadAs
     separate : mapping of str to tuple of str
         Channels of fields that come from other files.
@@ -102,7 +103,7 @@ class Reading:
     Raises
     ------
     FileError
-        The file has no view layer of that name or several to choose from, or lacks what was mapped.
+        If the file lacks the view layer, has several and none was chosen, or lacks a pass or channel of ``--map``.
     """
 
     def __init__(
@@ -121,7 +122,7 @@ class Reading:
     def frame(
         self, path: Path, planes: Mapping[str, Array], camera: Camera | None = None, previous: Camera | None = None
     ) -> Frame:
-        """Put the frame of a file together.
+        """Make the frame of a file.
 
         Parameters
         ----------
@@ -129,12 +130,12 @@ class Reading:
         planes : mapping of str to (H, W) array
             Its channels.
         camera, previous : Camera, optional
-            Those of this frame and of the one before, for motion and depth that the file does not tell.
+            The cameras of this frame and of the previous one, to compute motion and depth if the file lacks them.
 
         Raises
         ------
         FileError
-            A field is missing, or of a wrong value.
+            If a field is missing or invalid.
         """
         values = self.values(path, planes)
         if self.reader.complete:
@@ -155,13 +156,13 @@ class Reading:
         return frame
 
     def motion_to_next(self, path: Path, planes: Mapping[str, Array]) -> npt.NDArray[np.float32] | None:
-        """The motion to the next frame, (H, W, 2), where the file tells it."""
+        """Return the motion to the next frame, (H, W, 2), if the file has it."""
         if "motion_to_next" not in self.sources:
             return None
         return np.asarray(self._value(path, planes, "motion_to_next"), np.float32)
 
     def values(self, path: Path, planes: Mapping[str, Array]) -> Values:
-        """What the passes of a file say of the frame; errors as of `frame`."""
+        """Return the values of a file's passes; errors as in `frame`."""
         there = [name for name, (_, channels) in self.sources.items() if planes.keys() & set(channels)]
         return {name: self._value(path, planes, name) for name in there if name != "motion_to_next"}
 
@@ -182,12 +183,12 @@ class Reading:
 
     @cached_property
     def picture(self) -> tuple[str, ...]:
-        """The channels of the picture; ``R G B`` where the file has its light in parts alone."""
+        """The channels of the picture; ``R G B`` if the file has only parts of its light."""
         return self.sources["color"][1][:3] if "color" in self.sources else CHANNEL_NAMES["color"]
 
     @cached_property
     def lights(self) -> tuple[LightPass, ...]:
-        """The passes that the picture is the sum of, as far as the file has them; none where none of them is noisy."""
+        """The passes whose sum is the picture, as far as the file has them; empty if none of them is noisy."""
         passes, found = self._layers.get(self.view_layer, {}), []
         for light in self.reader.lights:
             factor = passes.get(plain(light.factor), ()) if light.factor else ()
@@ -198,7 +199,7 @@ class Reading:
         return tuple(found) if any(light.filtered for light in found) else ()
 
     def radiance(self, path: Path, planes: Mapping[str, Array], light: LightPass) -> npt.NDArray[np.float32]:
-        """A light pass as far as it is in the picture, (H, W, 3), before its factor; errors as of `frame`."""
+        """Return a light pass, (H, W, 3), without its factor, where it is in the picture; errors as in `frame`."""
         radiance = stacked(path, planes, light.channels)
         if light.kind.is_background and self.alpha in planes:
             radiance *= np.asarray(planes[self.alpha] >= 1.0)[..., None]
@@ -206,7 +207,7 @@ class Reading:
 
     @cached_property
     def alpha(self) -> str:
-        """The channel of the picture's alpha; empty where there is none."""
+        """The channel of the picture's alpha; empty if there is none."""
         layer, name, _ = place(self.picture[0])
         channels = self._layers.get(layer, {}).get(name, ())
         return channels[3] if len(channels) > 3 else ""
@@ -216,7 +217,7 @@ class Reading:
         return Found(self._channels, self._layers.get(self.view_layer, {}))
 
     def _chosen_layer(self, path: Path) -> str:
-        """The name of the view layer that is read."""
+        """Return the name of the view layer to read."""
         wanted, layers = self.how.view_layer, self._possible_layers()
         if wanted is not None:
             if wanted not in self._layers:
@@ -227,14 +228,14 @@ class Reading:
         return layers[0] if layers else ""
 
     def _possible_layers(self) -> list[str]:
-        """The view layers that have a picture and more; without any such those with a picture, or with anything."""
+        """Return the view layers that have a picture and other fields, or else a picture, or else any field."""
         found = {name: self.reader.sources(Found((), passes)).keys() for name, passes in self._layers.items()}
         with_picture = [name for name, fields in found.items() if "color" in fields]
         with_more = [name for name in with_picture if len(found[name]) > 1]
         return with_more or with_picture or [name for name, fields in found.items() if fields]
 
     def _mapped(self, separate: Mapping[str, tuple[str, ...]]) -> dict[str, tuple[Source, tuple[str, ...]]]:
-        """The sources that the user names; what is known of the renderer's own holds for them, too."""
+        """Return the sources that the user names; they are converted like the renderer's own passes."""
         found: dict[str, tuple[Source, tuple[str, ...]]] = {}
         mapped = {name: called(wanted, self._channels, self.view_layer) for name, wanted in self.how.passes.items()}
         for name, channels in {**mapped, **separate}.items():
@@ -250,11 +251,11 @@ class Reading:
         return found
 
     def _absent(self, path: Path, fields: list[str], planes: Mapping[str, Array]) -> FileError:
-        """The error for fields that are missing; it says what the file has, and what to do in the renderer."""
+        """Return the error for missing fields; it lists the file's channels, and says what to do in the renderer."""
         switches = self.reader.switches
-        measured = {"depth", "position", "distance"} & self.sources.keys()  # cameras tell motion by one of them
+        measured = {"depth", "position", "distance"} & self.sources.keys()  # with a camera, one of these gives motion
         written = [field for field in fields if field in self.reader.passes or not measured]
-        if {*REQUIRED} <= {*fields}:  # the picture alone is there, so the file may be of a format that holds no more
+        if {*REQUIRED} <= {*fields}:  # there is only the picture: the file's format may allow no more
             written = ["color", *written]
         hints = [switches[field] for field in written if field in switches]
         hints += [CAMERAS] if measured and {"depth", "motion"} & set(fields) else []
@@ -267,7 +268,7 @@ class Reading:
 
 
 def stacked(path: Path, planes: Mapping[str, Array], channels: Sequence[str]) -> npt.NDArray[np.float32]:
-    """The picture (H, W, 3) of three channels; `FileError` where the file lacks one."""
+    """Return the picture (H, W, 3) of three channels; raise `FileError` if the file lacks one."""
     lost = [channel for channel in channels if channel not in planes]
     if lost:
         raise FileError(f"{path}: expected the light pass {grouped(channels)} as in the first frame, found none")
@@ -275,11 +276,11 @@ def stacked(path: Path, planes: Mapping[str, Array], channels: Sequence[str]) ->
 
 
 def single_precision(plane: Array) -> Array:
-    """A plane of floats as float32, one of integers as it is."""
+    """Return a plane of floats as float32, and a plane of integers unchanged."""
     return plane if plane.dtype.kind in "ui" else np.asarray(plane, np.float32)
 
 
 def sum_of(pictures: Iterable[Array]) -> npt.NDArray[np.float32]:
-    """The sum of pictures (H, W, 3)."""
+    """Return the sum of pictures (H, W, 3)."""
     total: npt.NDArray[np.float32] = np.sum(list(pictures), axis=0, dtype=np.float32)
     return total

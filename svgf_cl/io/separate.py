@@ -1,4 +1,4 @@
-"""Passes in files of their own, one file a pass and frame, as ``--albedo albedo.####.exr`` names them."""
+"""Fields in separate files, one file for each field and frame, as ``--albedo albedo.####.exr`` gives them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from svgf_cl.io.readers.reader import HELPERS
 from svgf_cl.io.sequence import find_frames, number_of
 from svgf_cl.io.window import Window
 
-# The picture is that of the frame's own file.
+# Without color: the picture is in the frame's own file.
 FIELDS = tuple(name for name in CHANNELS | HELPERS if name not in ("color", "motion_to_next"))
 
 
@@ -27,21 +27,21 @@ class SeparateFiles:
     Parameters
     ----------
     paths : mapping of str to (mapping of int to Path)
-        For each field its files.
+        The files of each field.
     """
 
     paths: Mapping[str, Mapping[int, Path]]
 
     @classmethod
     def of(cls, patterns: Mapping[str, Path]) -> SeparateFiles:
-        """Find the files of fields by a pattern, a folder or a file each.
+        """Find the files of each field, which is given as a pattern, a folder or a file.
 
         Raises
         ------
         FileError
-            As of `find_frames`.
+            As in `find_frames`.
         SvgfError
-            There is no field of that name.
+            If there is no field of that name.
         """
         for field in patterns:
             if field not in FIELDS:
@@ -54,7 +54,7 @@ class SeparateFiles:
         )
 
     def require(self, numbers: Sequence[int]) -> None:
-        """Raise `FileError` unless each of these frames has its file of every field."""
+        """Raise `FileError` unless each of these frames has a file for every field."""
         for field, files in self.paths.items():
             missing = [number for number in numbers if number not in files]
             if missing:
@@ -62,16 +62,16 @@ class SeparateFiles:
                 raise FileError(f"{example}: expected a file of {field} for frame {missing[0]}, found none")
 
     def channels(self, number: int) -> dict[str, tuple[str, ...]]:
-        """The channels of each field, as `planes` calls them, told from the files of one frame."""
+        """Return the channels of each field, with the names of `planes`, from the files of one frame."""
         return {field: tuple(self._planes(field, number)) for field in self.paths}
 
     def planes(self, number: int, window: Window) -> dict[str, Plane]:
-        """The channels of all fields of a frame, whose pixels lie on this data window.
+        """Return the channels of all fields of a frame that has this data window.
 
         Raises
         ------
         FileError
-            A frame's file of a field has no pass or several, or another data window.
+            If a field's file has no pass, several passes, or another data window.
         """
         return {name: plane for field in self.paths for name, plane in self._planes(field, number, window).items()}
 
@@ -84,7 +84,7 @@ class SeparateFiles:
 
 
 def pass_of(path: Path, image: Image) -> Sequence[str]:
-    """The channels of a file's only pass, which may have no name, or of its picture."""
+    """Return the channels of a file's only pass, which may have no name, or of its picture."""
     places = {PLACES[name.casefold()]: name for name in image.planes if name.casefold() in PLACES}
     if len(places) == len(image.planes):
         return [places[place] for place in sorted(places)]

@@ -1,8 +1,8 @@
-"""Which files are the frames of a shot, and in which order: told from their names, and checked before they are trusted.
+"""Finds the frames of a shot by their file names, sorts them by number, and checks them.
 
-The number of a frame is the last one in its name, in any padding: ``frame.0007.exr``, ``shot_7.exr``, ``0007.exr``. A
-minus behind a dot, an underscore or nothing belongs to it: ``frame.-0002.exr``. What is around the number is the same
-in all frames of a shot.
+The number of a frame is the last one in its name, with any padding: ``frame.0007.exr``, ``shot_7.exr``, ``0007.exr``. A
+minus belongs to the number if it follows a dot or an underscore, or begins the name: ``frame.-0002.exr``. The rest of
+the name is the same in all frames of a shot.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from svgf_cl.io.atomic import entries, require, unreadable
 from svgf_cl.io.patterns import expanded
 
 NUMBER = re.compile(r"(?P<head>.*?)(?P<digits>(?:(?<![^._])-)?[0-9]+)(?P<tail>[^0-9]*)", re.DOTALL)
-# A folder that svgf-cl has rendered to holds both; by what is around their numbers.
+# `svgf-cl render` writes both to one folder. The texts are those around the number.
 OTHERS = {"frame": ("reference.", ".exr"), "reference": ("frame.", ".exr")}
-# Pictures that some command may have written, whatever the names of its frames.
+# Pictures that a command may have written, whatever the names of its frames.
 WRITTEN = {("frame.", ".exr"), ("reference.", ".exr"), ("frame.", ".png"), ("still.", ".png")}
-NO_NUMBER = 0  # of the frame of a file that has none in its name
+NO_NUMBER = 0  # the frame number of a file without a number in its name
 SHOWN = 4  # names or gaps that a message lists
 
 
 @dataclass(frozen=True)
 class Name:
-    """A file's name, taken apart at its number.
+    """A file's name, split at its number.
 
     Parameters
     ----------
@@ -45,33 +45,33 @@ class Name:
 
     @classmethod
     def of(cls, path: Path) -> Name | None:
-        """Take the name of `path` apart; None where there is no number in it."""
+        """Split the name of `path`; None if it has no number."""
         match = NUMBER.fullmatch(path.name)
         return cls(path, **match.groupdict()) if match else None
 
     @property
     def number(self) -> int:
-        """The frame's place in its sequence."""
+        """The frame's number."""
         return int(self.digits)
 
     @property
     def shot(self) -> tuple[str, str]:
-        """What all frames of a shot have in common."""
+        """The texts around the number, which are the same in all frames of a shot."""
         return self.head, self.tail
 
     def is_padded(self, width: int) -> bool:
-        """Whether the number is written in at least so many digits; a minus may be one of them."""
+        """Whether the number is padded to `width` digits; a minus may be one of them."""
         return self.digits in (f"{self.number:0{width}d}", f"-{-self.number:0{width}d}")
 
 
 def frame_number(path: Path) -> int | None:
-    """Return the number in a name like ``frame.0007.exr``; None where there is none."""
+    """Return the number in a name such as ``frame.0007.exr``; None if there is none."""
     name = Name.of(path)
     return name.number if name else None
 
 
 def number_of(path: Path) -> int:
-    """The number in a file's name, or `NO_NUMBER`."""
+    """Return the number in a file's name, or `NO_NUMBER`."""
     number = frame_number(path)
     return NO_NUMBER if number is None else number
 
@@ -82,9 +82,9 @@ def find_frames(paths: Iterable[Path], *, allow_gaps: bool = False) -> list[Path
     Parameters
     ----------
     paths : iterable of Path
-        Files in any order, patterns of their names, or the folder that holds them. A single file needs no number.
+        Files in any order, patterns of names, or a folder of frames. A single file needs no number.
     allow_gaps : bool
-        Take a shot that lacks frames; `after_gaps` tells where.
+        Accept a shot that lacks frames; `after_gaps` says where.
 
     Returns
     -------
@@ -93,13 +93,13 @@ def find_frames(paths: Iterable[Path], *, allow_gaps: bool = False) -> list[Path
     Raises
     ------
     FileError
-        A path is missing; a folder holds no frame; files are of several shots, or without a number; a number or a file
-        is there twice; a frame between two others is not there.
+        If a path is missing, a folder has no frame, files belong to several shots or have no number, a number or a file
+        occurs twice, or a frame between two others is missing.
 
     Warns
     -----
     UserWarning
-        Files of the folder look like frames, but are not; numbers are padded in several ways.
+        If files in the folder look like frames but are not, or numbers are padded in several ways.
     """
     found: list[Path] = []
     for path in (each for given in paths for each in expanded(given)):
@@ -112,18 +112,20 @@ def find_frames(paths: Iterable[Path], *, allow_gaps: bool = False) -> list[Path
 
 
 def find_numbered(folder: Path, stem: str) -> list[Path]:
-    """Find the pictures of a folder by number, gaps or not: its ``stem.NUMBER.exr``, or the one sequence it holds.
+    """Return the pictures of a folder, sorted by number: its ``stem.NUMBER.exr``, or else its only sequence.
+
+    There may be gaps.
 
     Raises
     ------
     FileError
-        As `find_frames`.
+        As in `find_frames`.
     """
     return in_order(shot_in(folder, stem))
 
 
 def shot_in(folder: Path, stem: str = "frame") -> list[Path]:
-    """Find the one numbered sequence of EXR files in a folder; errors and warnings as of `find_frames`."""
+    """Return the only numbered sequence of EXR files in a folder; errors and warnings as in `find_frames`."""
     visible = [path for path in entries(folder) if not path.name.startswith(".")]
     names = [name for path in visible if path.suffix.lower() == ".exr" and (name := Name.of(path))]
     ours = [name for name in names if name.shot != OTHERS[stem]] or names
@@ -142,7 +144,7 @@ def shot_in(folder: Path, stem: str = "frame") -> list[Path]:
 
 
 def look_alikes(shot: Sequence[Name], paths: Iterable[Path]) -> list[str]:
-    """Names of files that may have been meant as frames of a shot, but are none; not of a frame's other formats."""
+    """Return names of files that look like frames of a shot but are not, except a frame's files in other formats."""
     numbers = {name.number for name in shot}
     start = re.compile(re.escape(shot[0].head.rstrip("._- ")) or r"-?[0-9]", re.IGNORECASE)
     frames = {name.path for name in shot}
@@ -158,7 +160,7 @@ def look_alikes(shot: Sequence[Name], paths: Iterable[Path]) -> list[str]:
 
 
 def in_order(files: Sequence[Path]) -> list[Path]:
-    """Sort the files of one shot by number; errors and warnings as of `find_frames`."""
+    """Sort the files of one shot by number; errors and warnings as in `find_frames`."""
     if len(files) == 1:
         return list(files)
     names = []
@@ -175,14 +177,15 @@ def in_order(files: Sequence[Path]) -> list[Path]:
     odd = [name.path.name for name in names if not name.is_padded(usual)]
     if odd:
         warnings.warn(
-            f"{listed(odd)}: padded in another way than other frames, so perhaps of another run; read as the same shot",
+            f"{listed(odd)}: padded in another way than the other frames, so perhaps from another run; "
+            "read as the same shot",
             stacklevel=3,
         )
     return [name.path for name in names]
 
 
 def check_one_shot(names: Sequence[Name]) -> None:
-    """Raise `FileError` where files differ in more than their numbers, or lie in several folders."""
+    """Raise `FileError` if files differ in more than their numbers, or are in several folders."""
     shots: dict[object, list[Path]] = {}
     for name in names:
         shots.setdefault((name.path.parent.resolve(), name.shot), []).append(name.path)
@@ -195,7 +198,7 @@ def check_one_shot(names: Sequence[Name]) -> None:
 
 
 def check_doubles(names: Sequence[Name]) -> None:
-    """Raise `FileError` where a file, or a number, is there twice among files that are sorted by number."""
+    """Raise `FileError` if a file or a number occurs twice; the files are sorted by number."""
     seen: dict[tuple[int, int], Path] = {}
     for name in names:
         key = identity(name.path)
@@ -211,7 +214,7 @@ def check_doubles(names: Sequence[Name]) -> None:
 
 
 def identity(path: Path) -> tuple[int, int]:
-    """What a file is known by, however many links lead to it."""
+    """Return the identity of a file, which is the same for all links to it."""
     try:
         status = path.stat()
     except OSError as error:
@@ -220,7 +223,7 @@ def identity(path: Path) -> tuple[int, int]:
 
 
 def check_gaps(files: Sequence[Path]) -> None:
-    """Raise `FileError` where a number is missing: the next frame's motion would lead to the wrong one."""
+    """Raise `FileError` if a number is missing: the next frame's motion would refer to the wrong frame."""
     names = [name for path in files if (name := Name.of(path))]
     gaps = [(before, after) for before, after in pairwise(names) if after.number > before.number + 1]
     if not gaps:
@@ -236,13 +239,13 @@ def check_gaps(files: Sequence[Path]) -> None:
 
 
 def after_gaps(files: Sequence[Path]) -> set[Path]:
-    """Which of some frames in order follow on a gap: the motion in them leads to a frame that is not there."""
+    """Return the frames that follow a gap: their motion refers to a missing frame. The files are sorted by number."""
     numbered = [(path, frame_number(path) or 0) for path in files]
     return {after for (_, before), (after, number) in pairwise(numbered) if number != before + 1}
 
 
 def check_leftovers(folder: Path, written: Collection[Path]) -> None:
-    """Raise `FileError` where pictures of an earlier run would stay in `folder` and pass for a part of this one."""
+    """Raise `FileError` if `folder` has pictures of an earlier run that would look like a part of this one."""
     new = set(written)
     heads = {name.head for path in new if (name := Name.of(path))}
     known = WRITTEN | {(head, suffix) for head in heads for suffix in (".exr", ".png")}
@@ -253,11 +256,11 @@ def check_leftovers(folder: Path, written: Collection[Path]) -> None:
 
 
 def listed(names: Sequence[str]) -> str:
-    """Write the first few of some names, and how many more there are."""
+    """Return a text with the first few names, and how many more there are."""
     more = len(names) - SHOWN
     return ", ".join(names[:SHOWN]) + (f" and {more} more" if more > 0 else "")
 
 
 def spanned(first: int, last: int) -> str:
-    """Write the frames of a gap."""
+    """Return the frames of a gap as a text."""
     return str(first) if first == last else f"{first} to {last}"

@@ -1,4 +1,4 @@
-"""`Shot`: the frames of a shot, from files of any renderer, on the one window that all their pixels lie in."""
+"""`Shot`: the frames of a shot, from files of any renderer, all on one window that contains all their pixels."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from svgf_cl.io.window import Window, placed, union
 
 Picture = npt.NDArray[np.float32]
 
-# What the fields of a pixel hold that shows nothing; all others are 0.
+# The values of a pixel outside a frame's data window; all other fields are 0 there.
 NOTHING = {"depth": np.inf, "albedo": 1.0, "roughness": 1.0}
 
 
@@ -37,17 +37,17 @@ class Light:
     Parameters
     ----------
     channels : tuple of str
-        Its red, green and blue.
+        Its red, green and blue channel.
     radiance : (H, W, 3) float32
-        What the pass holds.
+        The values of the pass.
     factor : (H, W, 3) float32, optional
-        What it is to be multiplied by to be a part of the picture; 1 where there is none.
+        The pass times this factor is a part of the picture; None stands for 1.
     factor_channels : tuple of str
-        The channels that the factor is from.
+        The channels of the factor.
     filtered : bool
         Whether it is noisy.
     reflects : bool
-        Whether it is seen in the surface, as in a mirror, so that the albedo of what is seen is in it.
+        Whether it is a reflection, as in a mirror, which contains the albedo of the reflected surface.
     """
 
     channels: tuple[str, ...]
@@ -66,11 +66,11 @@ class ShotFrame:
     ----------
     path : Path
     image : Image
-        All of its file.
+        The content of its file.
     frame : Frame
-        On the window of the shot.
+        The frame on the window of the shot.
     lights : tuple of Light
-        What the picture is the sum of, on the same window; none where the file does not say.
+        The parts whose sum is the picture, on the same window; empty if the file does not have them.
     """
 
     path: Path
@@ -85,9 +85,9 @@ class Shot(Sequence[Frame]):
     Parameters
     ----------
     paths : sequence of Path
-        One file a frame, in order.
+        One file for each frame, in order.
     how : ReadAs
-        What the files do not tell.
+        The user's options.
     separate : SeparateFiles
         Further files of each frame.
 
@@ -96,16 +96,16 @@ class Shot(Sequence[Frame]):
     separate : SeparateFiles
         Further files of each frame.
     reading : Reading
-        How files become frames.
+        Turns files into frames.
     window : Window
-        Of all pixels of the shot, on the display window; outside of its own data window a frame shows nothing.
+        The smallest window with all pixels of the shot; outside its own data window a frame is empty.
     cuts : set of int
-        Indices of the frames that do not follow on the one before them, as frames between the two are missing.
+        Indices of the frames that follow a gap, so that their previous frame is missing.
 
     Raises
     ------
     FileError
-        The files cannot lie on one picture, the first is not read as `how` has it, or a frame lacks a file of a field.
+        If the files do not fit on one picture, the first cannot be read with `how`, or a frame lacks a separate file.
     """
 
     def __init__(self, paths: Sequence[Path], how: ReadAs | None = None, separate: SeparateFiles | None = None) -> None:
@@ -125,7 +125,7 @@ class Shot(Sequence[Frame]):
 
     @cached_property
     def camera_file(self) -> Path | None:
-        """The file that cameras are read from, where depth or motion is computed from them."""
+        """The file of cameras, if depth or motion is computed from them."""
         given = self.reading.how.cameras
         if not self._needs_cameras:
             return None
@@ -149,13 +149,13 @@ class Shot(Sequence[Frame]):
         return self.read(range(len(self))[index]).frame
 
     def read(self, index: int) -> ShotFrame:
-        """Read all of a frame.
+        """Read a frame, and the content of its file.
 
         Raises
         ------
         FileError
-            Its file is missing or damaged, lacks a field or has another set of fields than the first that was read, or
-            a field has no usable value.
+            If its file is missing or damaged, lacks a field, has other fields than the first frame that was read, or
+            has a field without any usable value.
         """
         path = self.paths[index]
         image = read_image(path)
@@ -168,15 +168,15 @@ class Shot(Sequence[Frame]):
         return ShotFrame(path, image, moved(frame, own, self.window), lights)
 
     def beginning(self) -> tuple[ShotFrame, ShotFrame]:
-        """The first two frames, which tell what holds for all of the shot; the first one twice if there is no other."""
+        """Return the first two frames, which represent the shot; the first one twice if there is no second."""
         first = self.read(0)
         try:
             return first, self.read(1) if len(self) > 1 else first
-        except FileError:  # which is told when its turn comes
+        except FileError:  # it is reported when the second frame is read in its turn
             return first, first
 
     def motion_to_next(self, source: ShotFrame) -> Picture | None:
-        """The motion of a frame to the next one, (H, W, 2 or 3), where its file or the cameras tell it."""
+        """Return the motion of a frame to the next one, (H, W, 2 or 3), from its file or the cameras, or None."""
         path, image = source.path, source.image
         if (motion := self.reading.motion_to_next(path, image.planes)) is not None:
             return placed(motion, image.windows.data, self.window, 0.0)
@@ -188,7 +188,7 @@ class Shot(Sequence[Frame]):
         return motion_from_cameras(camera, following, depth=source.frame.depth)
 
     def _cameras_at(self, index: int, window: Window) -> tuple[Camera | None, Camera | None]:
-        """The cameras of a frame and of the one before, where fields are computed from them."""
+        """Return the cameras of a frame and of the previous one, if fields are computed from them."""
         if not self._needs_cameras:
             return None, None
         number = number_of(self.paths[index])
@@ -196,17 +196,17 @@ class Shot(Sequence[Frame]):
 
     @property
     def _needs_cameras(self) -> bool:
-        """Whether files lack what is computed from cameras."""
+        """Whether files lack depth or motion, which cameras can give."""
         return not {"depth", "motion"} <= self.reading.sources.keys()
 
     def _light(self, path: Path, planes: Mapping[str, Plane], light: LightPass, own: Window) -> Light:
-        """A light of a file, on the window of the shot."""
+        """Return a light of a file, on the window of the shot."""
         radiance = placed(self.reading.radiance(path, planes, light), own, self.window, 0.0)
         factor = placed(stacked(path, planes, light.factor), own, self.window, 0.0) if light.factor else None
         return Light(light.channels, radiance, factor, light.factor, light.filtered, light.kind.reflects)
 
     def _check_fields(self, path: Path, frame: Frame) -> None:
-        """Raise `FileError` where a frame has another set of fields than the first one."""
+        """Raise `FileError` if a frame has other fields than the first one that was read."""
         have = fields_of(frame)
         self._fields = self._fields or have
         changes = [f"without {name}" for name in sorted(self._fields - have)]
@@ -229,9 +229,9 @@ def open_sequence(
     frames : path, or iterable of paths
         Files, their folder, or a pattern of their names: ``"shot/####.exr"``, ``"shot/%04d.exr"``, ``"shot/*.exr"``.
     allow_gaps : bool
-        Whether frames may be missing; `Shot.cuts` has those behind a gap.
+        Whether frames may be missing; `Shot.cuts` has the frames after a gap.
     separate : mapping of str to path, optional
-        Patterns of the files of fields that are not in those of `frames`, such as ``{"depth": "depth.####.exr"}``.
+        Patterns of files for fields that the files of `frames` lack, such as ``{"depth": "depth.####.exr"}``.
     **how
         The parameters of `ReadAs`: ``format``, ``view_layer``, ``passes``, ``motion_scale``, ``cameras``,
         ``still_camera``.
@@ -244,9 +244,9 @@ def open_sequence(
     Raises
     ------
     FileError
-        Files are missing, damaged or of several shots, or the first lacks a field.
+        If files are missing, damaged or belong to several shots, or the first lacks a field.
     SvgfError
-        One of `how` is wrong.
+        If one of `how` is wrong.
 
     Examples
     --------
@@ -261,7 +261,7 @@ def open_sequence(
 
 
 def shared_window(paths: Sequence[Path]) -> Window:
-    """The window of all pixels of these files; `FileError` where they cannot lie on one picture."""
+    """Return the window of all pixels of these files; raise `FileError` if they do not fit on one picture."""
     windows = {path: read_windows(path) for path in paths}
     first = windows[paths[0]]
     for path, own in windows.items():
@@ -281,18 +281,18 @@ def shared_window(paths: Sequence[Path]) -> Window:
 
 
 def moved(frame: Frame, have: Window, want: Window) -> Frame:
-    """The frame on another window; where it had no pixel it shows nothing."""
+    """Return the frame on another window; pixels that it did not have are empty."""
     fields = {name: placed(value, have, want, NOTHING.get(name, 0.0)) for name, value in frame.present().items()}
     return Frame(**fields)
 
 
 def fields_of(frame: Frame) -> set[str]:
-    """Name the fields that are there, and motion.Z, which is optional too."""
+    """Return the names of the fields that are there, and "motion.Z" if motion has three components."""
     return {*frame.present(), *(["motion.Z"] if frame.motion.shape[-1] == 3 else [])}
 
 
 def check_usable(path: Path, frame: Frame) -> None:
-    """Raise `FileError` where a whole field is NaN or infinite (depth may be infinite: an empty sky)."""
+    """Raise `FileError` if a whole field is NaN or infinite (depth may be infinite: an empty sky)."""
     for field, value in frame.present().items():
         usable = ~np.isnan(value) if field == "depth" else np.isfinite(value)
         if not usable.any():

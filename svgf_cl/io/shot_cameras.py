@@ -1,4 +1,4 @@
-"""`ShotCameras`: the camera of each frame of a shot, wherever it is told."""
+"""`ShotCameras`: the camera of each frame of a shot, from a file, from the user, or from the frames' headers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class ShotCameras:
     Parameters
     ----------
     paths : sequence of Path
-        One file a frame.
+        One file for each frame.
     given : Path, or mapping of int to Camera
         A file of cameras, or the cameras by the numbers of their frames.
     display : Window
@@ -33,12 +33,12 @@ class ShotCameras:
         self._found: dict[int, Camera | None] = {}
 
     def at(self, number: int, window: Window) -> Camera | None:
-        """The camera of a frame by its number, whose pixels count from the corner of a data window.
+        """Return the camera of the frame with this number; its pixels count from the corner of `window`.
 
         Raises
         ------
         FileError
-            The file of cameras, or the header of the frame, cannot be read or is of no camera.
+            If the file of cameras or the frame's header cannot be read, or has an invalid camera.
         """
         if number not in self._found:
             self._found[number] = self._given.get(number) or self._in_header(number)
@@ -54,7 +54,7 @@ class ShotCameras:
         return self._display.height, self._display.width
 
     def _in_header(self, number: int) -> Camera | None:
-        """The camera in the header of a frame's file, if there is one."""
+        """Return the camera in the header of a frame's file, if there is one."""
         if number not in self._paths:
             return None
         path = self._paths[number]

@@ -1,4 +1,4 @@
-"""Noisy frames of an empty room, computed in closed form: input for benchmarks and tests that need no path tracer."""
+"""Makes noisy frames of an empty room in closed form, for benchmarks and tests that need no path tracer."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ Array = NDArray[np.float64]
 
 HALF_SIZE = np.array([4.0, 2.0, 6.0])  # the room reaches from -HALF_SIZE to HALF_SIZE
 TILES_PER_UNIT = 2.0
-LIGHT = 0.5  # mean of each signal over the albedo
+LIGHT = 0.5  # mean of each signal divided by the albedo
 FOCAL_LENGTH = 0.9  # in image heights
-# The camera looks along -z and goes round a small loop in so many frames: they may be sent over and over.
+# The camera looks along -z and moves around a small loop in this many frames, so that they can be repeated.
 PERIOD = 8
 LOOP = np.array([0.03, 0.01, 0.05])
 
 
 def room_frames(shape: Shape, count: int, *, signals: int = 1, seed: int = 0) -> Iterator[Frame]:
-    """Frames of a camera that moves in a tiled room lit with exponentially distributed noise.
+    """Yield frames of a camera that moves in a tiled room, with exponentially distributed noise in the light.
 
     Parameters
     ----------
@@ -30,20 +30,20 @@ def room_frames(shape: Shape, count: int, *, signals: int = 1, seed: int = 0) ->
         (height, width) in pixels.
     count : int, frames
     signals : int, 1 or 2
-        2 supplies direct and indirect light apart.
+        With 2, frames have direct and indirect light, too.
     seed : int
 
     Yields
     ------
     Frame
-        With albedo and id; motion has three components and is exact.
+        It has albedo and id; motion has three components and is exact.
     """
     for index in range(count):
         yield room_frame(shape, index, index - 1, signals=signals, seed=seed)
 
 
 def room_frame(shape: Shape, index: int, previous: int, *, signals: int = 1, seed: int = 0) -> Frame:
-    """The frame at place `index` of the camera's loop, as it comes after the one at place `previous`."""
+    """Return the frame at position `index` of the camera's loop; its motion leads to position `previous`."""
     view = View.of(shape, eye(index))
     past = view.points - eye(previous)
     deeper = -past[..., 2:] - view.depth[..., None]
@@ -59,7 +59,7 @@ def room_frame(shape: Shape, index: int, previous: int, *, signals: int = 1, see
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """What the camera sees: (H, W, 3) points, normal, albedo; (H, W) depth, wall."""
+    """The surfaces that the camera sees: (H, W, 3) points, normal and albedo; (H, W) depth and wall."""
 
     points: Array
     normal: Array
@@ -69,7 +69,7 @@ class View:
 
     @classmethod
     def of(cls, shape: Shape, origin: Array) -> View:
-        """The room from `origin`."""
+        """Return the view of the room from `origin`."""
         towards = rays(shape)
         with np.errstate(divide="ignore"):
             distances = (np.copysign(HALF_SIZE, towards) - origin) / towards
@@ -88,26 +88,26 @@ class View:
 
 
 def eye(index: int) -> Array:
-    """Where the camera is at a frame."""
+    """Return the camera's position at a frame."""
     turn = 2 * np.pi * index / PERIOD
     return LOOP * (np.sin(turn), np.cos(turn), np.cos(turn))
 
 
 def pixels(shape: Shape) -> Array:
-    """(H, W, 2) x and y of every pixel's centre."""
+    """Return x and y of every pixel's centre, (H, W, 2)."""
     height, width = shape
     return np.stack(np.meshgrid(np.arange(width), np.arange(height)), axis=-1).astype(np.float64)
 
 
 def rays(shape: Shape) -> Array:
-    """(H, W, 3) directions whose component along the view is 1, so that distance along them is depth."""
+    """Return the rays' directions, (H, W, 3), scaled so that the distance along them is depth."""
     height, width = shape
     offset = (pixels(shape) - ((width - 1) / 2, (height - 1) / 2)) / (FOCAL_LENGTH * height)
     return np.stack([offset[..., 0], -offset[..., 1], np.full(shape, -1.0)], axis=-1)
 
 
 def project(points: Array, shape: Shape) -> Array:
-    """(H, W, 2) pixel where a point relative to the eye, (H, W, 3), is seen."""
+    """Return the pixel that shows a point, (H, W, 2); points are relative to the eye, (H, W, 3)."""
     height, width = shape
     seen: Array = points[..., :2] * (1, -1) / -points[..., 2:] * FOCAL_LENGTH * height + (
         (width - 1) / 2,

@@ -1,4 +1,4 @@
-"""Data and display windows: where the pixels of an OpenEXR file lie on the picture that they are a part of."""
+"""`Window`: the data and display windows of OpenEXR files, which say where their pixels lie on the picture."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Number = TypeVar("Number", bound=np.generic)
 
 
 class Window(NamedTuple):
-    """A rectangle of pixels; x and y are its upper left one, in the coordinates that all windows of a shot share."""
+    """A rectangle of pixels; x and y are its upper left pixel, in the coordinates that all windows of a shot share."""
 
     x: int
     y: int
@@ -20,17 +20,17 @@ class Window(NamedTuple):
     height: int
 
     def __str__(self) -> str:
-        """Write it as people do: 160x64 at 8,0."""
+        """Return a text such as 160x64 at 8,0."""
         return f"{self.width}x{self.height} at {self.x},{self.y}"
 
     @property
     def area(self) -> int:
-        """How many pixels."""
+        """Number of pixels."""
         return self.width * self.height
 
 
 def union(windows: Iterable[Window]) -> Window:
-    """The smallest window that has all of `windows` in it."""
+    """Return the smallest window that contains all `windows`."""
     boxes = np.array([(w.x, w.y, w.x + w.width, w.y + w.height) for w in windows])
     (left, top), (right, bottom) = boxes[:, :2].min(axis=0).tolist(), boxes[:, 2:].max(axis=0).tolist()
     return Window(left, top, right - left, bottom - top)

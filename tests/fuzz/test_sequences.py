@@ -62,7 +62,7 @@ class Calls(RuleBasedStateMachine):
     @rule(seed=calls.seeds, launch=st.integers(0, 8))
     def a_frame_that_breaks_off(self, seed: int, launch: int) -> None:
         frame = calls.frame_of(seed, TINY, self.names, 3, wild=False)
-        with broken_launch(launch), pytest.raises(DeviceError, match="the past is forgotten"):
+        with broken_launch(launch), pytest.raises(DeviceError, match="the history is discarded"):
             self.den.denoise(frame)
         self.twin.reset()
         self.begun = False

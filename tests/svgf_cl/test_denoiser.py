@@ -385,7 +385,7 @@ def test_a_cut_that_fails_leaves_all_in_step(before: int) -> None:
     for frame in frames[:before]:  # with either half in turn
         den.denoise(frame)
     den.reset()
-    with failing("enqueue_fill_buffer", 0, no_such_call), pytest.raises(DeviceError, match="past is forgotten"):
+    with failing("enqueue_fill_buffer", 0, no_such_call), pytest.raises(DeviceError, match="history is discarded"):
         den.denoise(frames[2])
     for frame in frames[2:]:
         assert_array_equal(den.denoise(frame), plain.denoise(frame))

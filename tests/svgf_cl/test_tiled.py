@@ -159,7 +159,7 @@ def test_the_right_one_is_made() -> None:
     assert isinstance(denoiser_for(SHAPE, inputs, settings=chosen, max_bytes=2 * needed), Denoiser)
     tiled = denoiser_for(SHAPE, inputs, settings=chosen, max_bytes=needed // 2)
     assert isinstance(tiled, TiledDenoiser)
-    assert "143x97 frames take" in tiled.reason
+    assert "143x97 frames need" in tiled.reason
     assert f"working in {tiled.tiles} tiles" in tiled.reason
 
 

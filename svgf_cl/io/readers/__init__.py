@@ -1,4 +1,4 @@
-"""Frames of renderers: one file a renderer, which says how its passes become the fields of a frame."""
+"""Reads the frames of renderers: one module for each, which says how its passes become the fields of a frame."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from svgf_cl.io.readers.pbrt import PBRT
 from svgf_cl.io.readers.reader import Reader
 from svgf_cl.io.readers.vray import VRAY
 
-# In the order in which they are asked whether a file is theirs.
+# In the order in which they are tried on a file.
 READERS: dict[str, Reader] = {reader.name: reader for reader in (OWN, BLENDER, MITSUBA, PBRT, ARNOLD, VRAY)}
 
 
 def reader_of(image: Image) -> Reader:
-    """The reader for an image, told from its channels and header; that of our own channels where none knows it."""
+    """Return the reader for an image by its channels and header; the reader of our own channels if none matches."""
     return next((reader for reader in READERS.values() if reader.recognises(image)), OWN)
 
 
 def reader_called(name: str) -> Reader:
-    """The reader of that name.
+    """Return the reader of this name.
 
     Raises
     ------
     SvgfError
-        There is none.
+        If there is none.
     """
     if name not in READERS:
         raise SvgfError(f"--format: expected {' or '.join(READERS)}, got {shown(name)}")

@@ -1,9 +1,9 @@
-"""Arnold's multichannel EXR: R G B A (RGBA), and a layer for each AOV; the header has the camera's matrices.
+"""Reads Arnold's multichannel EXR: R G B A (RGBA), and a layer for each AOV; the header has the camera's matrices.
 
-N is in world space, Z the distance along the camera's axis. motionvector is the way that a point moves during the
-shutter interval: with an interval of a whole frame it is minus our motion, as far as things move evenly. Its unit and
-axes were taken to be pixels, y up; no frame of Arnold with it was at hand. So where there are positions and the
-header's cameras, motion of what stands still can be had from them: leave motionvector out.
+N is in world space, and Z is the distance along the camera's axis. motionvector is the path of a point during the
+shutter interval. If the interval is a whole frame and objects move evenly, it is our motion with the opposite sign. We
+assume that it is in pixels, y up, as we had no frame of Arnold that contains it. If files have positions, and cameras
+in their headers, motion of static objects can be computed from these: leave motionvector out then.
 """
 
 from __future__ import annotations

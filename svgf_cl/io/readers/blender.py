@@ -1,9 +1,9 @@
-"""Blender's OpenEXR MultiLayer files, of Cycles: ``ViewLayer.Combined.R`` and so on.
+"""Reads Blender's OpenEXR MultiLayer files of Cycles: ``ViewLayer.Combined.R`` and so on.
 
-Conventions, found numerically on frames of Blender 4.2 and 5.0: Vector holds the previous position minus the current
-one in its X and Y, and the current one minus the next in Z and W, in pixels, y up. Depth is the camera's z of the first
-sample, 1e10 where nothing was hit. Normal is in world space, a mean over samples in which a miss counts as 0. Denoising
-Albedo of a sharp mirror is that of what it reflects, and of a lamp the light that it emits.
+The conventions were found numerically on frames of Blender 4.2 and 5.0. Vector is in pixels, y up: X and Y are the
+previous position minus the current one, Z and W the current position minus the next. Depth is the camera's z of the
+first sample, and 1e10 where nothing was hit. Normal is in world space, a mean over samples in which a miss counts as 0.
+Denoising Albedo is the albedo of the reflected surface in a sharp mirror, and the emitted light on a lamp.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from svgf_cl.io.readers.conversions import Array, depth_of_hits, hashes, reflect
 from svgf_cl.io.readers.passes import place
 from svgf_cl.io.readers.reader import LightPasses, Pass, Reader, has_attribute
 
-STAMP = {"Camera", "Frame", "RenderTime", "Scene"}  # what Blender says in the header of any file
+STAMP = {"Camera", "Frame", "RenderTime", "Scene"}  # attributes that Blender writes to every file
 
 
 def recognises(image: Image) -> bool:
-    """Whether Blender says so, or a view layer has a pass called as Blender calls the picture."""
+    """Whether the header is Blender's, or a view layer has a pass with Blender's name of the picture."""
     said = has_attribute(image, "BlenderMultiChannel") or image.parts[0].attributes.keys() >= STAMP
     return said or any(place(name).name == "combined" for name in image.planes)
 
 
 def to_next(vector: Array) -> Array:
-    """The motion to the next frame, (H, W, 2), y down."""
+    """Return the motion to the next frame, (H, W, 2), y down."""
     moved: Array = vector[..., 2:4] * np.array([-1, 1], np.float32)
     return moved
 
@@ -35,7 +35,7 @@ BLENDER = Reader(
     title="Blender (Cycles), OpenEXR MultiLayer",
     recognises=recognises,
     passes={
-        "color": (Pass(("Combined", "Image", ""), 3),),  # without a name: a file of one pass, of the compositor
+        "color": (Pass(("Combined", "Image", ""), 3),),  # "" is a compositor's file of one pass
         "albedo": (Pass(("Denoising Albedo",), 3, reflected),),
         "normal": (Pass(("Normal",), 3),),
         "depth": (Pass(("Depth",), 1, depth_of_hits),),
@@ -52,7 +52,7 @@ BLENDER = Reader(
         " Blender does not write it",
     },
     lights=(
-        # Those of Blender 5, then those of earlier versions.
+        # First the names of Blender 5, then those of earlier versions.
         LightPasses(("Diffuse Direct", "Diffuse Indirect"), "Diffuse Color"),
         LightPasses(("Glossy Direct", "Glossy Indirect"), "Glossy Color", reflects=True),
         LightPasses(("Transmission Direct", "Transmission Indirect"), "Transmission Color", reflects=True),

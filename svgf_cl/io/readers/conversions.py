@@ -1,4 +1,4 @@
-"""What makes fields of `Frame` of passes that several renderers write alike."""
+"""Converts passes that several renderers write in the same way to fields of `Frame`."""
 
 from __future__ import annotations
 
@@ -9,38 +9,38 @@ import numpy.typing as npt
 
 Array = npt.NDArray[Any]
 
-FAR = 1e9  # depths beyond it stand for a ray that hit nothing
+FAR = 1e9  # a greater depth means that the ray hit nothing
 
 
 def depth_of_hits(depth: Array) -> Array:
-    """Depth (H, W), infinite where nothing was hit: there renderers write 0, or a great number."""
+    """Return depth (H, W) with infinity where nothing was hit; renderers write 0 or a great number there."""
     return np.where((depth > 0) & (depth < FAR), depth, np.float32(np.inf))
 
 
 def reflected(albedo: Array) -> Array:
-    """Albedo (H, W, 3) of passes that hold the light of lamps where lamps are seen: it is 1 there."""
+    """Return albedo (H, W, 3), limited to 1, from a pass that has emitted light where a lamp is visible."""
     limited: Array = np.minimum(albedo[..., :3], np.float32(1))
     return limited
 
 
 def y_down(vector: Array) -> Array:
-    """The motion to the previous frame, (H, W, 2), y down, of previous minus current position, y up."""
+    """Return the motion to the previous frame, (H, W, 2), y down, from previous minus current position, y up."""
     moved: Array = vector[..., :2] * np.array([1, -1], np.float32)
     return moved
 
 
 def against_time(vector: Array) -> Array:
-    """The motion to the previous frame, (H, W, 2), y down, of the way made during a frame, y up."""
+    """Return the motion to the previous frame, (H, W, 2), y down, from the movement during a frame, y up."""
     return -y_down(vector)
 
 
 def along_time(vector: Array) -> Array:
-    """The motion to the next frame, (H, W, 2), y down, of the way made during a frame, y up."""
+    """Return the motion to the next frame, (H, W, 2), y down, from the movement during a frame, y up."""
     return y_down(vector)
 
 
 def without_edges(ids: Array) -> Array:
-    """Ids (H, W) of an antialiased pass, where a pixel at an edge holds a mean of ids: it gets a neighbour's."""
+    """Return ids (H, W) from an antialiased pass: a pixel at an edge has a mean of ids, and gets a neighbour's id."""
     values = np.asarray(ids, np.float64)
     whole = (values == np.floor(values)) & (values >= 0) & (values < 2**32)
     result = np.where(whole, values, 0)
@@ -53,5 +53,5 @@ def without_edges(ids: Array) -> Array:
 
 
 def hashes(cryptomatte: Array) -> Array:
-    """The ids (H, W) in the first layer (H, W, 4) of a Cryptomatte: the bits of the first of its numbers."""
+    """Return the ids (H, W) from the first layer (H, W, 4) of a Cryptomatte: the bits of its first component."""
     return np.ascontiguousarray(cryptomatte[..., 0], np.float32).view(np.uint32)

@@ -1,9 +1,9 @@
-"""Mitsuba 3's `aov` integrator over another one: R G B, and a layer for each name that the user chose.
+"""Reads files of Mitsuba 3's `aov` integrator: R G B, and a layer for each name that the user chose.
 
 ``dd:depth`` gives ``dd.T``, ``nn:sh_normal`` gives ``nn.X Y Z``, ``pp:position`` gives ``pp.X Y Z``, and
-``idx:shape_index`` gives ``idx.I``. Depth is the distance along the ray. There are no motion vectors: they are computed
-from positions and cameras. The shape index is no id of an object: Mitsuba numbers shapes anew when it loads the scene
-of the next frame, so it is not read.
+``idx:shape_index`` gives ``idx.I``. Depth is the distance along the ray. There are no motion vectors: motion is
+computed from positions and cameras. The shape index is not read, because Mitsuba numbers the shapes again when it loads
+the scene of the next frame.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Our own channels, docs/conventions.md: those that ``svgf-cl render`` writes, and any renderer with these names."""
+"""Reads our own channels (docs/conventions.md), from ``svgf-cl render`` and from any renderer with the same names."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ CHANNEL_NAMES: dict[str, tuple[str, ...]] = {
     "hit_distance": ("hit_distance.diffuse", "hit_distance.specular"),
 }
 OPTIONAL = "motion.Z"
-MAX_ID = 2**24  # of ids in a channel of floats
+MAX_ID = 2**24  # greatest id in a channel of floats
 
 
 def needed(field: str) -> tuple[str, ...]:
-    """The channels without which a field is not there."""
+    """Return the channels that a field needs."""
     return tuple(name for name in CHANNEL_NAMES[field] if name != OPTIONAL)
 
 
 def recognises(image: Image) -> bool:
-    """Whether the image has all the fields that a frame needs beside its light."""
+    """Whether the image has all the fields that a frame needs in addition to its light."""
     return all(image.planes.keys() >= set(needed(field)) for field in REQUIRED)
 
 
 def whole_numbers(plane: Array) -> Array:
-    """Ids as integers; `ValueError` unless they are, or are whole numbers that float32 holds exactly."""
+    """Return ids as integers; raise `ValueError` unless they are whole numbers that float32 represents exactly."""
     if plane.dtype == np.uint32:
         return plane
     values = np.asarray(plane, np.float32)

@@ -1,4 +1,4 @@
-"""Passes of a file: its channels, grouped by view layer and pass, whatever a renderer calls components."""
+"""Groups the channels of a file by view layer and pass, for all renderers' names of components."""
 
 from __future__ import annotations
 
@@ -8,37 +8,37 @@ from typing import NamedTuple
 
 from svgf_cl.io.look_alikes import split
 
-# The place of a component in its pass. Names of one letter are capital or small; V-Ray writes words.
+# The index of a component in its pass. Names of one letter may be capital or small; V-Ray writes words.
 PLACES = {
     **dict.fromkeys(("r", "red", "x", "u", "t", "i", ""), 0),
     **dict.fromkeys(("g", "green", "y", "v"), 1),
     **dict.fromkeys(("b", "blue", "z"), 2),
     **dict.fromkeys(("a", "alpha", "w"), 3),
 }
-# Channels without a layer that are components all the same, of the picture.
+# Channels without a layer that are components of the picture.
 PICTURE = ("R", "G", "B", "A")
 
 # The channels of a pass, in the order of their components.
 Channels = tuple[str, ...]
-# Passes by their names, as `plain` has them; the picture without a layer is called "".
+# Passes by their names in the form of `plain`; the picture without a layer is called "".
 Passes = Mapping[str, Channels]
 
 
 class Place(NamedTuple):
-    """Where a channel belongs."""
+    """The view layer, pass and component of a channel."""
 
     view_layer: str
-    name: str  # of the pass, as `plain` has it
+    name: str  # of the pass, in the form of `plain`
     component: int
 
 
 def plain(name: str) -> str:
-    """A pass's name in small letters, without spaces and signs: ``Denoising Albedo`` is ``denoisingalbedo``."""
+    """Return a pass's name in small letters, without spaces and signs: ``Denoising Albedo`` is ``denoisingalbedo``."""
     return re.sub(r"[\W_]", "", name.casefold())
 
 
 def place(channel: str) -> Place:
-    """Tell view layer, pass and component from a channel's name, such as ``ViewLayer.Combined.R``."""
+    """Return view layer, pass and component of a channel's name, such as ``ViewLayer.Combined.R``."""
     if channel in PICTURE:
         return Place("", "", PLACES[channel.casefold()])
     layer, component = split(channel)
@@ -47,15 +47,15 @@ def place(channel: str) -> Place:
 
 
 def layer_of(channel: str) -> str:
-    """The name of the layer that a channel is a component of, as the file has it; "" for the picture without one."""
+    """Return the name of a channel's layer as in the file; "" for the picture without a layer."""
     return "" if channel in PICTURE else split(channel)[0]
 
 
 def by_view_layer(channels: Iterable[str]) -> dict[str, Passes]:
-    """Group channels by view layer and pass; files without view layers have one, called "".
+    """Group channels by view layer and pass; a file without view layers gets one, called "".
 
-    Of passes whose names differ in capitals, spaces and signs alone, and of channels that are the same component of a
-    pass, the first by the alphabet is taken.
+    If the names of passes differ only in capitals, spaces and signs, the first one in alphabetical order is used. The
+    same is true for channels that are the same component of a pass.
     """
     layers: dict[str, dict[int, str]] = {}
     for channel in sorted(channels):
@@ -69,9 +69,9 @@ def by_view_layer(channels: Iterable[str]) -> dict[str, Passes]:
 
 
 def called(name: str, channels: Iterable[str], view_layer: str) -> Channels:
-    """The channels that a user means: one of that name, or a pass's in the order of its components.
+    """Return the channels that a user's name means: a channel, or a pass's channels in the order of its components.
 
-    The pass may be one of the view layer, or be given with the view layer that it is of.
+    The pass is one of `view_layer`, unless its name begins with another view layer.
     """
     channels = list(channels)
     if name in channels:

@@ -1,7 +1,7 @@
-"""pbrt-v4's film "gbuffer": R G B, Albedo, P, N and Ns; the header has the camera's matrices.
+"""Reads pbrt-v4's film "gbuffer": R G B, Albedo, P, N and Ns; the header has the camera's matrices.
 
-Positions and normals are in camera space unless the film says ``"string coordinatesystem" "world"``. Which of the two
-it was is told by where positions project to: in the right one they lie on their own pixels.
+Positions and normals are in camera space unless the film has ``"string coordinatesystem" "world"``. The reader projects
+the positions to find out: in the right space they lie on their own pixels.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from svgf_cl.io.readers.conversions import Array
 from svgf_cl.io.readers.reader import Exactly, Pass, Reader, Values
 
 SWITCH = 'render with Film "gbuffer"'
-AXES = ("renderman", "mitsuba")  # x to the right, as the format says, or to the left, as mirrored cameras have it
+AXES = ("renderman", "mitsuba")  # x to the right, as in the format, or to the left, in mirrored cameras
 
 Turn = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]
 
@@ -26,7 +26,7 @@ def recognises(image: Image) -> bool:
 
 
 def in_world(values: Values, camera: Camera | None) -> Values:
-    """Take positions and normals from camera space to the world, where they are not there already."""
+    """Transform positions and normals from camera space to world space, unless they are in world space already."""
     if camera is None or "position" not in values:
         return values
     position = np.asarray(values["position"], np.float64)
@@ -42,13 +42,13 @@ def in_world(values: Values, camera: Camera | None) -> Values:
 
 
 def to_world(camera: Camera, axes: str) -> Turn:
-    """Rotation and offset that take columns from the camera's space, whose axes have this name, to the world."""
+    """Return the rotation and offset from the camera's space, whose axes have this name, to world space."""
     inverse = np.linalg.inv(camera.world_to_view) @ view_axes("pbrt", axes)
     return inverse[:3, :3], inverse[:3, 3]
 
 
 def error(position: Array, hit: Array, camera: Camera, turn: Turn) -> float:
-    """How far positions lie off their own pixels if they are turned like that: the median, in pixels."""
+    """Return the median distance of transformed positions from their own pixels, in pixels."""
     rows, columns = np.nonzero(hit)
     pixels, _ = camera.project(position[rows, columns] @ turn[0].T + turn[1])
     distance = np.hypot(*(pixels - np.stack([columns, rows], axis=-1)).T)
@@ -62,7 +62,7 @@ PBRT = Reader(
     passes={
         "color": (Pass(("",), 3),),
         "albedo": (Pass(("Albedo",), 3),),
-        # Versions before 2022 wrote Px in place of P.X.
+        # Versions before 2022 wrote Px instead of P.X.
         "normal": (Pass(("Ns", "N"), 3), Exactly(("Nsx", "Nsy", "Nsz"))),
         "position": (Pass(("P",), 3), Exactly(("Px", "Py", "Pz"))),
     },

@@ -1,4 +1,4 @@
-"""`Reader`: how one renderer writes the fields of a frame, and the light that its picture is the sum of."""
+"""`Reader`: describes how a renderer writes the fields of a frame, and the light passes whose sum is its picture."""
 
 from __future__ import annotations
 
@@ -14,57 +14,58 @@ from svgf_cl.io.readers.conversions import Array
 from svgf_cl.io.readers.passes import Passes, plain
 
 Convert = Callable[[Array], Array]
-# What passes hold: fields of `Frame`, or what fields can be computed from, by name.
+# Values of passes by name: fields of `Frame`, or `HELPERS`.
 Values = dict[str, Array]
 Complete = Callable[[Values, Camera | None], Values]
 
-# What is no field of a frame, but fields can be computed from. World positions; lengths of the rays from the camera;
-# where a pixel is in the next frame, as `motion`. With the number of components.
+# Values that are no fields of a frame, but from which fields can be computed, with their number of components: world
+# positions; the length of the ray from the camera; the motion to the next frame.
 HELPERS = {"position": 3, "distance": 1, "motion_to_next": 2}
 
 
 @dataclass(frozen=True)
 class Found:
-    """What a file has, in one view layer of it."""
+    """The channels of a file, and the passes of one of its view layers."""
 
     channels: Collection[str]
     passes: Passes
 
 
 class Source(Protocol):
-    """Where a field may come from."""
+    """A source of a field: a pass, or channels of given names."""
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What it may be called."""
+        """Its possible names."""
 
     @property
     def size(self) -> int:
-        """Components that it has at least."""
+        """Its least number of components."""
 
     @property
     def convert(self) -> Convert | None:
-        """What makes ours of its array."""
+        """Converts its array to our conventions."""
 
     def find(self, found: Found) -> tuple[str, ...]:
-        """Its channels; none where it is not there, `ValueError` where it is there in part."""
+        """Return its channels; empty if they are missing. Raise `ValueError` if only some are missing."""
 
     def read(self, planes: Sequence[Array]) -> Array:
-        """Make the field of the planes of its channels."""
+        """Make the field from the planes of its channels."""
 
 
 @dataclass(frozen=True)
 class Pass:
-    """A pass, by the names that it may have.
+    """A pass that may have one of several names.
 
     Parameters
     ----------
     names : tuple of str
-        The likeliest first; capitals, spaces and signs do not matter. "" is the picture without a layer.
+        The most likely first; capitals, spaces and signs do not matter. "" is the picture without a layer.
     size : int
-        Components that it has at least.
+        Least number of components.
     convert : callable, optional
-        Makes ours of its (H, W, C) array, or (H, W) where `size` is 1; without it the first `size` components are ours.
+        Converts its (H, W, C) array, or (H, W) if `size` is 1, to our conventions. Without it, the first `size`
+        components are used as they are.
     """
 
     names: tuple[str, ...]
@@ -72,7 +73,7 @@ class Pass:
     convert: Convert | None = None
 
     def find(self, found: Found) -> tuple[str, ...]:
-        """Its channels."""
+        """Return its channels; empty if they are missing."""
         for name in map(plain, self.names):
             channels = found.passes.get(name, ())
             if len(channels) >= self.size:
@@ -80,27 +81,26 @@ class Pass:
         return ()
 
     def used(self, channels: tuple[str, ...]) -> tuple[str, ...]:
-        """Those of a pass's channels that `read` takes."""
+        """Return the channels of a pass that `read` needs."""
         return channels if self.convert and self.size > 1 else channels[: self.size]
 
     def read(self, planes: Sequence[Array]) -> Array:
-        """Make the field of its planes."""
-        values = planes[0] if self.size == 1 else np.stack(planes, axis=-1)
-        return self.convert(values) if self.convert else values
+        """Make the field from its planes."""
+        return joined(planes, self.convert)
 
 
 @dataclass(frozen=True)
 class Exactly:
-    """Channels of these very names.
+    """Channels of exactly these names.
 
     Parameters
     ----------
     names : tuple of str
         In the order of the components.
     optional : tuple of str
-        Those that may be missing.
+        Names that may be missing.
     convert : callable, optional
-        As of `Pass`.
+        As in `Pass`.
     """
 
     names: tuple[str, ...]
@@ -109,11 +109,11 @@ class Exactly:
 
     @property
     def size(self) -> int:
-        """Components that it has at least."""
+        """Its least number of components."""
         return len(self.names) - len(set(self.optional) & set(self.names))
 
     def find(self, found: Found) -> tuple[str, ...]:
-        """Those that are there."""
+        """Return its channels; empty if they are missing. Raise `ValueError` if only some are missing."""
         there = tuple(name for name in self.names if name in found.channels)
         missing = [name for name in self.names if name not in (*there, *self.optional)]
         if there and missing:
@@ -121,27 +121,26 @@ class Exactly:
         return there
 
     def read(self, planes: Sequence[Array]) -> Array:
-        """Make the field of its planes."""
-        values = planes[0] if len(self.names) == 1 else np.stack(planes, axis=-1)
-        return self.convert(values) if self.convert else values
+        """Make the field from its planes."""
+        return joined(planes, self.convert)
 
 
 @dataclass(frozen=True)
 class LightPasses:
-    """Parts of the picture that are stored as passes of their own.
+    """Parts of the picture that are stored as separate passes.
 
     Parameters
     ----------
     names : tuple of str
         The passes; each is filtered by itself.
     factor : str, optional
-        The pass that each of them has to be multiplied by to be light: an albedo that is free of noise.
+        The pass to multiply each of them by, to get light: an albedo without noise.
     filtered : bool
-        Whether it is noisy; else it passes through, as light that the camera sees directly does.
+        Whether they are noisy; else they are not filtered, such as light that the camera sees directly.
     reflects : bool
-        Whether it is seen in the surface, as in a mirror, and the albedo of what is seen there is still in it.
+        Whether they are reflections, as in a mirror, which contain the albedo of the reflected surface.
     is_background : bool
-        Whether it is behind everything: it is no part of a picture with a transparent film, where alpha is below 1.
+        Whether they are behind everything. With a transparent film, the picture lacks them where alpha is below 1.
     """
 
     names: tuple[str, ...]
@@ -153,24 +152,24 @@ class LightPasses:
 
 @dataclass(frozen=True, kw_only=True)
 class Reader:
-    """What is known of one renderer's files.
+    """The description of one renderer's files.
 
     Parameters
     ----------
     name : str
-        For ``--format``.
+        Its name for ``--format``.
     title : str
-        What messages call it.
+        Its name in messages.
     recognises : callable
-        Whether an image was written by it.
+        Whether the renderer wrote an image.
     passes : mapping of str to tuple of Source
-        Where each field of a frame is, or may be; the best first. Beside the fields there may be `HELPERS`.
+        The possible sources of each field of a frame, and of `HELPERS`; the best first.
     switches : mapping of str to str
-        What to do in the renderer to have a field written, for those that users forget.
+        What to do in the renderer so that it writes a field, for fields that users forget.
     lights : tuple of LightPasses
         Their sum is the picture.
     complete : callable, optional
-        Makes fields of what the passes hold, where that takes more than one of them.
+        Changes the values of the passes, where that needs several of them.
     """
 
     name: str
@@ -182,7 +181,7 @@ class Reader:
     complete: Complete | None = None
 
     def sources(self, found: Found) -> dict[str, tuple[Source, tuple[str, ...]]]:
-        """The source of each field that is there, and its channels; `ValueError` where one is there in part."""
+        """Return the source and the channels of each field that is there; raise `ValueError` if one is incomplete."""
         sources = {}
         for name, candidates in self.passes.items():
             there = [(source, channels) for source in candidates if (channels := source.find(found))]
@@ -191,12 +190,18 @@ class Reader:
         return sources
 
 
+def joined(planes: Sequence[Array], convert: Convert | None) -> Array:
+    """Return planes (H, W) as one array, (H, W) if there is one plane, else (H, W, C); converted, if necessary."""
+    values = planes[0] if len(planes) == 1 else np.stack(planes, axis=-1)
+    return convert(values) if convert else values
+
+
 def has_attribute(image: Image, start: str) -> bool:
-    """Whether the header of an image has an attribute whose name begins like that."""
+    """Whether the header of an image has an attribute whose name begins with `start`."""
     return any(name.startswith(start) for part in image.parts for name in part.attributes)
 
 
 def text_attribute(image: Image, name: str) -> str:
-    """A text of an image's header; empty where there is none."""
+    """Return a text of an image's header; empty if there is none."""
     kind, value = image.parts[0].attributes.get(name, ("", b""))
     return value.decode(errors="replace") if kind == "string" else ""

@@ -1,8 +1,8 @@
-"""V-Ray's multichannel EXR: R G B A, and a layer for each render element, in Maya's names or in those of 3ds Max.
+"""Reads V-Ray's multichannel EXR: R G B A, and a layer for each render element, with the names of Maya or 3ds Max.
 
-``diffuse.red`` of Maya is ``VRayDiffuseFilter.R`` of 3ds Max. Z-depth is the distance along the camera's axis. Velocity
-is the way that a point moves until the next frame, in pixels, y up. Normals are in screen space, so they change where
-the camera turns: surfaces are told apart a little less well then, and ``svgf-cl check`` says so.
+``diffuse.red`` in Maya is ``VRayDiffuseFilter.R`` in 3ds Max. Z-depth is the distance along the camera's axis. Velocity
+is the movement of a point until the next frame, in pixels, y up. Normals are in screen space, so they change when the
+camera turns: then the filter separates surfaces a little less well, and ``svgf-cl check`` reports it.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from svgf_cl.io.readers.reader import LightPasses, Pass, Reader, has_attribute
 
 
 def recognises(image: Image) -> bool:
-    """Whether V-Ray says so, or a channel is called as only V-Ray does."""
+    """Whether the header is V-Ray's, or a channel has a name that only V-Ray uses."""
     named = any(name.startswith("VRay") or name.endswith(".red") for name in image.planes)
     return named or has_attribute(image, "vray")
 

@@ -176,7 +176,7 @@ def test_a_wavering_default_is_a_doubt(cost: Any, fake: type[FakeDenoiser], queu
     search = Tuner(SHAPE, queue)
     search.search()
     (doubt,) = search.doubts
-    assert re.fullmatch(r"the default's own time wavers by \d\d%, more than 10%", doubt)
+    assert re.fullmatch(r"the default's own time varies by \d\d%, more than 10%", doubt)
 
 
 @pytest.mark.parametrize(

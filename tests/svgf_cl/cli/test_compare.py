@@ -74,7 +74,7 @@ def test_nan_misses_every_limit(frames: Path, capsys: pytest.CaptureFixture[str]
     for option in ("--fail-below=psnr=-inf", "--fail-above=relmse=inf", "--fail-above=flip=1"):
         assert run("compare", frames / "nan.exr", frames / FIRST, option) == 1
         said = capsys.readouterr().err.splitlines()
-        assert said[0] == "nan: hardly measured, as pixels are NaN: pictures"
+        assert said[0] == "nan: most measures are missing, because pixels are NaN: pictures"
         assert "was not measured" in said[1]
         assert len(said) == 2
 
@@ -240,7 +240,7 @@ def test_scenes_and_pictures_do_not_mix(rendered: Path, refused) -> None:
 
 
 def test_frames_alone_have_nothing_to_be_held_against(rendered: Path, refused) -> None:
-    refused("expected two pictures or folders, the second being the reference", "compare", rendered)
+    refused("expected two pictures or folders, of which the second is the reference", "compare", rendered)
     refused("got 3; to filter frames, add --reference", "compare", rendered, rendered, rendered)
 
 

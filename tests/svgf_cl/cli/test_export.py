@@ -42,7 +42,7 @@ def test_for_a_kind_of_device_none_is_needed(tmp_path: Path, monkeypatch: pytest
         (("--size", "40"), "--size: expected WIDTHxHEIGHT in pixels such as 640x360, got '40'"),
         (
             ("--size", "30000x30000"),
-            "--size: expected frames whose buffers indices of 32 bits reach (about 11000x11000)",
+            "--size: expected at most about 11000x11000 pixels, because indices have 32 bits",
         ),
         (("--fields", "albdo"), f"{OPTIONAL}'albdo'"),
         (

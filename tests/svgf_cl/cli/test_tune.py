@@ -56,7 +56,7 @@ def test_of_a_search_that_breaks_off_the_file_holds_what_was_tried(tmp_path: Pat
     monkeypatch.setattr(tuner.Tuner, "search", broken)
     assert run("tune", "--size", "32x18", "--seconds", "1e6", "--json", tmp_path / "tune.json") == 130
     written = json.loads((tmp_path / "tune.json").read_text())
-    assert written["verdict"] == "the search has not come to its end"
+    assert written["verdict"] == "the search is not finished"
     assert len(written["trials"]) >= 2
 
 
@@ -84,7 +84,7 @@ def test_where_numpy_arrays_are_copied_the_copies_are_timed(
 
 @pytest.mark.parametrize(
     ("seconds", "steady", "reason"),
-    [("0", float("inf"), "no time was left for "), ("1e6", -1.0, "the default's own time wavers by ")],
+    [("0", float("inf"), "no time was left for "), ("1e6", -1.0, "the default's own time varies by ")],
 )
 def test_what_is_in_doubt_is_not_stored(
     seconds: str, steady: float, reason: str, store: Path, monkeypatch: pytest.MonkeyPatch, capsys

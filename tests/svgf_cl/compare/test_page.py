@@ -146,7 +146,7 @@ def test_nothing_may_be_fetched(page: Page) -> None:
     assert not re.search(r"(src|href)=\"(?!data:)", text)
 
 
-PARTS = ("Summary", "Speed beside error", "Animated crops", "Temporal profiles", "Over frames", "Error map", "Measures")
+PARTS = ("Summary", "Speed and error", "Animated crops", "Temporal profiles", "Over frames", "Error map", "Measures")
 
 
 def test_what_there_is_no_data_for_is_left_out(page: Page) -> None:

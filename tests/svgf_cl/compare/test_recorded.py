@@ -101,7 +101,7 @@ def test_one_frame_has_the_reference_whatever_the_numbers(shot: Path) -> None:
 def test_one_reference_of_several_frames_goes_by_its_number(shot: Path) -> None:
     assert open_frames([shot], shot / "reference.0009.exr", jitter=False).judged == [9]
     nameless = Path(shutil.copy(shot / "reference.0009.exr", shot / "truth.exr"))
-    with pytest.raises(FileError, match=r"truth\.exr: expected in its name the number of one of the 3 frames"):
+    with pytest.raises(FileError, match=r"truth\.exr: expected the number of one of the 3 frames in its name"):
         open_frames([shot], nameless, jitter=False)
 
 

@@ -66,7 +66,9 @@ class TestQueue:
         """Drivers crash on such a queue."""
         with cl.CommandQueue(context) as queue:
             pass
-        with pytest.raises(SvgfError, match=r"expected a queue before the end of its 'with'.*; got a dead one"):
+        with pytest.raises(
+            SvgfError, match=r"expected a queue that is in use, before the end of its 'with' .*; got a dead one"
+        ):
             Denoiser(TINY, queue=queue)
 
     def test_whose_with_ends_later_still_serves(self, context: cl.Context) -> None:

@@ -57,7 +57,7 @@ def test_a_file_that_cannot_be_read_hides_no_other(vendors: Path) -> None:
 def test_a_variable_that_leads_nowhere_is_named(vendors: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     ((name, fault),) = icd_files.faults()
     assert name == f"{icd_files.VARIABLE}={vendors}/"
-    assert fault == "holds no .icd file; unset it for those in /etc/OpenCL/vendors"
+    assert fault == "has no .icd file; unset it for those in /etc/OpenCL/vendors"
     for place, words in ((vendors / "absent", "cannot be loaded"), (vendors / "absent.icd", "cannot be read")):
         monkeypatch.setenv(icd_files.VARIABLE, str(place))
         ((name, fault),) = icd_files.faults()

@@ -112,7 +112,7 @@ class TestBrokenOff:
     @pytest.mark.parametrize("at", range(len(PIPELINE.passes)))
     def test_at_any_kernel(self, at: int, den: Denoiser) -> None:
         den.denoise(FRAMES[0])
-        words = r"^denoise: expected .* to work, got clEnqueueNDRangeKernel failed: \w+; the past is forgotten"
+        words = r"^denoise: expected .* to work, got clEnqueueNDRangeKernel failed: \w+; the history is discarded"
         with broken_launch(at), pytest.raises(DeviceError, match=words):
             den.denoise(FRAMES[1])
         self.assert_begins_anew(den)
@@ -120,7 +120,10 @@ class TestBrokenOff:
     def test_when_the_result_is_fetched(self, den: Denoiser, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(user_arrays, "shares_memory", lambda device: False)
         den.denoise(FRAMES[0])
-        with failing("enqueue_copy", COPIES, beyond_the_end), pytest.raises(DeviceError, match="the past is forgotten"):
+        with (
+            failing("enqueue_copy", COPIES, beyond_the_end),
+            pytest.raises(DeviceError, match="the history is discarded"),
+        ):
             den.denoise(FRAMES[1])
         self.assert_begins_anew(den)
 
@@ -140,7 +143,7 @@ class TestNotBegun:
     ) -> None:
         monkeypatch.setattr(user_arrays, "shares_memory", lambda device: False)
         den.denoise(FRAMES[0])
-        with failing("enqueue_copy", 2, beyond_the_end), pytest.raises(DeviceError, match="the frame was not begun"):
+        with failing("enqueue_copy", 2, beyond_the_end), pytest.raises(DeviceError, match="the frame was not started"):
             den.denoise(FRAMES[1])
         assert_array_equal(den.denoise(FRAMES[1]), pictures[1])
 

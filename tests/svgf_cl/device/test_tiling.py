@@ -34,5 +34,5 @@ def test_no_buffer_is_larger_than_any_may_be() -> None:
 
 
 def test_a_filter_that_cannot_be_cut_is_refused() -> None:
-    with pytest.raises(ValueError, match="down: expected to read the past along motion"):
+    with pytest.raises(ValueError, match="down: expected to read the previous frame along motion"):
         Tiling(Coarse().pipeline(Inputs()), LARGE, 64)

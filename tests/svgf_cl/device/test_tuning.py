@@ -142,7 +142,7 @@ def test_a_file_that_cannot_be_used_is_named_and_changes_nothing(damage: str, me
         '{"vector_width": 3}': text.replace("kernels", "colonels"),
     }
     memory.write_text(broken.get(damage, damage))
-    with pytest.warns(UserWarning, match=f"{memory.name}: cannot be used .* 'svgf-cl tune' writes it anew"):
+    with pytest.warns(UserWarning, match=f"{memory.name}: cannot be used .* 'svgf-cl tune' writes it again"):
         assert best_tuning(FakeDevice()) == default_tuning(FakeDevice())
     store_tuning(FakeDevice(), ODD)
     assert stored_tuning(FakeDevice()) == ODD

@@ -476,7 +476,7 @@ class TestUploads:
             raise cl.LogicError("clEnqueueWriteBuffer failed: OUT_OF_RESOURCES")
 
         events = noted(monkeypatch)
-        with failing("enqueue_copy", 2, fail), pytest.raises(DeviceError, match="the frame was not begun"):
+        with failing("enqueue_copy", 2, fail), pytest.raises(DeviceError, match="the frame was not started"):
             den.denoise(FRAME)
         if not den.tuning.pinned_copies:
             assert_complete(events, 2)

@@ -169,7 +169,7 @@ def test_a_link_to_nothing_is_named(tmp_path: Path) -> None:
 
 def test_several_paddings_are_said(tmp_path: Path) -> None:
     files = touched(tmp_path, "frame.0001.exr", "frame.2.exr", "frame.0003.exr")
-    with pytest.warns(UserWarning, match=r"^frame\.2\.exr: padded in another way than other frames"):
+    with pytest.warns(UserWarning, match=r"^frame\.2\.exr: padded in another way than the other frames"):
         assert find_frames(files) == files
 
 
