@@ -8,18 +8,20 @@ from typing import Annotated
 import typer
 
 from svgf_cl.check import Inspection
-from svgf_cl.cli import reading
 from svgf_cl.cli.console import show, tracked
 from svgf_cl.cli.options import AllowGaps, Frames
+from svgf_cl.cli.reading import reads_frames
 from svgf_cl.cli.remarks import described
 from svgf_cl.errors import SvgfError
 from svgf_cl.frame import Frame
 from svgf_cl.io.atomic import output_file
 from svgf_cl.io.display import write_image
+from svgf_cl.io.reading import ReadAs
 from svgf_cl.io.sequence import find_frames
 from svgf_cl.io.shot import Shot
 
 
+@reads_frames
 def check(
     frames: Frames,
     output: Annotated[
@@ -27,13 +29,8 @@ def check(
         typer.Option("-o", "--output", metavar="FILE", help="Also draw the fields of the last frame into a PNG file."),
     ] = None,
     allow_gaps: AllowGaps = False,
-    format_: reading.Format = None,
-    maps: reading.Maps = [],  # noqa: B006  # never changed; typer needs the default here
-    view_layer: reading.ViewLayer = None,
-    cameras: reading.Cameras = None,
-    still_camera: reading.StillCamera = False,
-    motion_scale: reading.MotionScale = 1.0,
-    motion_flip: reading.MotionFlip = "",
+    *,
+    how: ReadAs,
 ) -> None:
     """Find mistakes in the frames of a shot before they are denoised.
 
@@ -51,7 +48,6 @@ def check(
     if output:
         output_file(output)
     sources = find_frames(frames, allow_gaps=allow_gaps)
-    how = reading.read_as(format_, maps, view_layer, cameras, still_camera, motion_scale, motion_flip)
     shot, inspection = Shot(sources, how), Inspection()
     last: list[Frame] = []
     for index in tracked(range(len(shot)), len(shot), "checking"):

@@ -11,14 +11,15 @@ from typing import Annotated
 import typer
 
 from svgf_cl.chunks import CHUNK, WARM_UP, cut, denoise_on_cluster
-from svgf_cl.cli import reading
 from svgf_cl.cli.console import kept_of, progress_bar, show_times
 from svgf_cl.cli.options import AllowGaps, Exposure, FilterName, Frames, SettingTexts, parse_settings
+from svgf_cl.cli.reading import reads_frames
 from svgf_cl.cli.remarks import Remarks, look_at_surfaces
 from svgf_cl.errors import SvgfError, shown
 from svgf_cl.filters import DEFAULT
 from svgf_cl.io.atomic import output_folder
 from svgf_cl.io.patterns import has_number, parse_range
+from svgf_cl.io.reading import ReadAs
 from svgf_cl.io.separate import SeparateFiles
 from svgf_cl.io.sequence import check_leftovers, find_frames, number_of
 from svgf_cl.io.shot import Shot
@@ -43,6 +44,7 @@ PREFILTER_HELP = (
 SCHEDULER_HELP = "Denoise chunks on the workers of this Dask scheduler, for example tcp://10.0.0.7:8786."
 
 
+@reads_frames
 def denoise(
     output: Annotated[
         Path,
@@ -96,9 +98,6 @@ def denoise(
     exposure: Exposure = 0.0,
     allow_gaps: AllowGaps = False,
     check: Annotated[bool, typer.Option(help="Check the first frames and warn of mistakes in them.")] = True,
-    format_: reading.Format = None,
-    maps: reading.Maps = [],  # noqa: B006
-    view_layer: reading.ViewLayer = None,
     color: Annotated[
         Path | None,
         typer.Option(metavar="FILES", help="The same as FRAMES: the picture, if each pass has its own files."),
@@ -108,10 +107,8 @@ def denoise(
     depth: Separate = None,
     motion: Separate = None,
     id_: Annotated[Path | None, typer.Option("--id", metavar="FILES", help=SEPARATE_HELP)] = None,
-    cameras: reading.Cameras = None,
-    still_camera: reading.StillCamera = False,
-    motion_scale: reading.MotionScale = 1.0,
-    motion_flip: reading.MotionFlip = "",
+    *,
+    how: ReadAs,
 ) -> None:
     """Denoise the EXR frames of a shot from Blender, Mitsuba, pbrt, Arnold, V-Ray or our own tracer.
 
@@ -150,7 +147,7 @@ def denoise(
         tuple(sources),
         tuple(targets),
         Method(parse_settings(filter_, set_), lights, parse_effort(prefilter)),
-        reading.read_as(format_, maps, view_layer, cameras, still_camera, motion_scale, motion_flip),
+        how,
         SeparateFiles.of({name: path for name, path in fields.items() if path}),
         Style(plain, layer, png, exposure),
         parse_look_ahead(look_ahead),

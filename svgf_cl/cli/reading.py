@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import functools
+import inspect
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -52,14 +54,30 @@ MotionFlip = Annotated[
 ]
 
 
+def reads_frames(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the options of `read_as` in place of its parameter `how`, which is the resulting `ReadAs`."""
+    parameters = dict(inspect.signature(command, eval_str=True).parameters)
+    options = inspect.signature(read_as, eval_str=True).parameters
+    del parameters["how"]
+
+    @functools.wraps(command)
+    def with_options(**given: Any) -> None:
+        how = read_as(**{name: given.pop(name) for name in options})
+        command(**given, how=how)
+
+    with_options.__signature__ = inspect.Signature([*parameters.values(), *options.values()])  # type: ignore[attr-defined]
+    return with_options
+
+
 def read_as(
-    format_: str | None,
-    maps: Sequence[str],
-    view_layer: str | None,
-    cameras: Path | None,
-    still_camera: bool,
-    motion_scale: float,
-    motion_flip: str,
+    *,
+    format_: Format = None,
+    maps: Maps = [],  # noqa: B006  # never changed; typer needs the default here
+    view_layer: ViewLayer = None,
+    cameras: Cameras = None,
+    still_camera: StillCamera = False,
+    motion_scale: MotionScale = 1.0,
+    motion_flip: MotionFlip = "",
 ) -> ReadAs:
     """Return the options as a `ReadAs`; raise `SvgfError` if one of them is wrong."""
     if motion_flip not in ("", "x", "y", "xy"):

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from svgf_cl.cli import reading
 from svgf_cl.cli.compare import is_scene, refuse_rendering
 from svgf_cl.cli.console import progress_bar
 from svgf_cl.cli.options import (
@@ -21,6 +20,7 @@ from svgf_cl.cli.options import (
     parse_measured_size,
     parse_settings,
 )
+from svgf_cl.cli.reading import reads_frames
 from svgf_cl.cli.remarks import described
 from svgf_cl.errors import SvgfError
 from svgf_cl.filters import DEFAULT
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 SIZE = "640x360"
 
 
+@reads_frames
 def view(
     inputs: Annotated[
         list[str],
@@ -73,13 +74,8 @@ def view(
         bool, typer.Option(help="Move the scene's rays within the pixel, with a new offset in each frame.")
     ] = False,
     allow_gaps: AllowGaps = False,
-    format_: reading.Format = None,
-    maps: reading.Maps = [],  # noqa: B006
-    view_layer: reading.ViewLayer = None,
-    cameras: reading.Cameras = None,
-    still_camera: reading.StillCamera = False,
-    motion_scale: reading.MotionScale = 1.0,
-    motion_flip: reading.MotionFlip = "",
+    *,
+    how: ReadAs,
 ) -> None:
     """Play noisy, denoised and reference pictures side by side in the browser, to see flicker.
 
@@ -100,7 +96,6 @@ def view(
     from svgf_cl.view.server import Server, Start
 
     settings = parse_settings(filter_, set_)
-    how = reading.read_as(format_, maps, view_layer, cameras, still_camera, motion_scale, motion_flip)
     is_files = bool(inputs) and not any(map(is_scene, inputs))
     if is_files:
         refuse_rendering({"--size": size, "--frames": frames, "--spp": spp, "--jitter": jitter})
