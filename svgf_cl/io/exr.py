@@ -110,11 +110,6 @@ def is_exr(path: Path) -> bool:
         raise unreadable(path, error) from error
 
 
-def read_channels(path: Path) -> dict[str, Plane]:
-    """Read the channels of an EXR file as (H, W) planes; names and errors are those of `read_image`."""
-    return read_image(path).planes
-
-
 def read_attribute(path: Path, name: str) -> int | float | str | bytes | None:
     """Read the attribute `name` of the first part of an EXR file; None if there is none.
 

@@ -11,7 +11,7 @@ import pytest
 
 from svgf_cl import FileError, SvgfError
 from svgf_cl.filters import DEFAULT
-from svgf_cl.io.exr import read_channels, read_image
+from svgf_cl.io.exr import read_image
 from svgf_cl.io.frames import frame_path, write_frame
 from svgf_cl.io.sequence import find_frames
 from svgf_cl.io.shot import Shot, ShotFrame
@@ -107,30 +107,30 @@ def test_later_frames_make_it_another_one(frames: int, sources: list[Path], tmp_
     """A chunk that reads so far ahead makes what the whole shot does."""
     job = job_of(sources, tmp_path / "out", look_ahead=frames)
     assert [each.target for each in run_all(job)] == list(job.targets)
-    first, forward = read_channels(job.targets[0]), tmp_path / "forward"
+    first, forward = read_image(job.targets[0]).planes, tmp_path / "forward"
     list(run_all(job_of(sources, forward)))
-    assert any((first[name] != plane).any() for name, plane in read_channels(forward / "shot_0001.exr").items())
+    assert any((first[name] != plane).any() for name, plane in read_image(forward / "shot_0001.exr").planes.items())
     if frames != 1:  # a block that is cut off begins its backward run elsewhere
         (alone,) = run(job_of(sources, tmp_path / "alone", look_ahead=frames), Chunk(0, range(1), 3))
-        assert all((first[name] == plane).all() for name, plane in read_channels(alone.target).items())
+        assert all((first[name] == plane).all() for name, plane in read_image(alone.target).planes.items())
 
 
 def test_a_picture_alone_is_written(sources: list[Path], tmp_path: Path) -> None:
     (first, *_) = run_all(job_of(sources, tmp_path / "out", style=Style(plain=True, png=True)))
-    assert read_channels(first.target).keys() == {"R", "G", "B"}
+    assert read_image(first.target).planes.keys() == {"R", "G", "B"}
     assert first.target.with_suffix(".png").exists()
 
 
 def test_light_passes_may_be_left_alone(sources: list[Path], tmp_path: Path) -> None:
     (first, *_) = run_all(job_of(sources, tmp_path / "out", method={"lights": False}))
-    before, after = read_channels(sources[0]), read_channels(first.target)
+    before, after = read_image(sources[0]).planes, read_image(first.target).planes
     different = {name for name, plane in before.items() if plane.tobytes() != after[name].tobytes()}
     assert different == {f"ViewLayer.Combined.{c}" for c in "RGB"}
 
 
 def test_the_standard_error_lies_beside_the_picture(sources: list[Path], tmp_path: Path) -> None:
     (first, *_) = run_all(job_of(sources, tmp_path / "out", settings={"standard_error": True}))
-    error = read_channels(first.target)["standard_error"]
+    error = read_image(first.target).planes["standard_error"]
     assert np.isfinite(error).all()
     assert error.any()
 

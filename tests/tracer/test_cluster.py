@@ -13,7 +13,7 @@ from distributed import LocalCluster
 from svgf_cl import Frame
 from svgf_cl.cli import main
 from svgf_cl.io import cache
-from svgf_cl.io.exr import read_channels
+from svgf_cl.io.exr import read_image
 from svgf_cl.scheduling import here, scheduled
 from svgf_cl_tracer import Goal, References, Shot, builtin_scene, render_frame, tracer_version
 from svgf_cl_tracer.references import CHUNK
@@ -71,7 +71,7 @@ def test_render_on_a_cluster_writes_the_same_files(
     files = sorted(path.name for path in (tmp_path / "here").iterdir())
     assert files == ["frame.0000.exr", "frame.0001.exr", "reference.0000.exr", "reference.0001.exr"]
     for name in files:
-        one, other = (read_channels(tmp_path / folder / name) for folder in ("here", "there"))
+        one, other = (read_image(tmp_path / folder / name).planes for folder in ("here", "there"))
         assert one.keys() == other.keys()
         for channel, values in one.items():
             np.testing.assert_array_equal(other[channel], values)

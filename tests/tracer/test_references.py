@@ -17,7 +17,7 @@ import pytest
 
 from svgf_cl.compare.metrics import relmse
 from svgf_cl.io import cache
-from svgf_cl.io.exr import read_channels
+from svgf_cl.io.exr import read_image
 from svgf_cl.io.frames import read_frame
 from svgf_cl_tracer import Camera, CameraPath, Goal, References, Scene, SceneError, Shot, builtin_scene, render_frame
 from svgf_cl_tracer.estimate import Estimate
@@ -258,7 +258,7 @@ def test_a_file_holds_all_there_is_to_know(tmp_path: Path) -> None:
     centres = render_frame(ROOM, 2, jitter=False)
     for name in ("albedo", "normal", "depth", "motion", "id", "roughness"):
         np.testing.assert_array_equal(getattr(frame, name), getattr(centres, name))
-    channels = read_channels(path)
+    channels = read_image(path).planes
     error = np.stack([channels[f"error.{c}"] for c in "RGB"], axis=-1)
     np.testing.assert_array_equal(error.reshape(-1, 3), estimate.standard_error)
     attributes = {each.name: each.value for each in oiio.ImageInput.open(str(path)).spec().extra_attribs}

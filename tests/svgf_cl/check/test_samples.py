@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from svgf_cl import Frame, check_sequence
-from svgf_cl.io.exr import read_channels
+from svgf_cl.io.exr import read_image
 
 SAMPLES = Path(__file__).parents[4] / "shared" / "samples"
 PATHS = sorted((SAMPLES / "blender" / "noisy").glob("*.exr"))
@@ -24,7 +24,7 @@ def stacked(planes: dict[str, np.ndarray], name: str, components: str) -> np.nda
 
 def blender(path: Path) -> Frame:
     """A frame of Cycles, by the conventions that README.md of the samples found."""
-    planes = read_channels(path)
+    planes = read_image(path).planes
     depth = planes["Main Layer.Depth.Z"]
     missed = depth > 1e9
     albedo = stacked(planes, "Main Layer.DiffCol", "RGB") + stacked(planes, "Main Layer.GlossCol", "RGB")
@@ -51,7 +51,7 @@ def seen(points: np.ndarray, camera: dict) -> np.ndarray:
 
 def mitsuba(path: Path, number: int, cameras: dict[int, dict]) -> Frame:
     """A frame of Mitsuba, whose motion is made of positions and cameras."""
-    planes = read_channels(path)
+    planes = read_image(path).planes
     points = stacked(planes, "pp", "XYZ").astype(np.float64)
     now, before = (seen(points, cameras[frame]) for frame in (number, number - 1))
     missed = planes["dd.T"] <= 0
@@ -90,7 +90,7 @@ def test_a_number_for_depth_where_there_is_no_normal_is_a_miss(cycles: list[Fram
 
 
 def test_the_next_frame_s_motion_in_the_third_component_is_found(cycles: list[Frame]) -> None:
-    vectors = [stacked(read_channels(path), "Main Layer.Vector", "XYZ") for path in PATHS]
+    vectors = [stacked(read_image(path).planes, "Main Layer.Vector", "XYZ") for path in PATHS]
     raw = [
         replace(frame, motion=vector * np.float32([1, -1, 1])) for frame, vector in zip(cycles, vectors, strict=True)
     ]

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl.io.exr import read_channels
+from svgf_cl.io.exr import read_image
 from svgf_cl.io.frames import frame_path, read_frame, write_frame
 from svgf_cl.io.synthetic import room_frames
 from tests.command_line import assert_goes_on, contents, run, run_signalled
@@ -97,7 +97,7 @@ def test_a_link_to_itself_is_replaced_and_one_to_the_input_is_not(rendered: Path
     target = tmp_path / "out" / "frame.0000.exr"
     target.symlink_to(target)
     assert run("denoise", rendered, "-o", tmp_path / "out") == 0
-    assert np.isfinite(read_channels(target)["R"]).all()
+    assert np.isfinite(read_image(target).planes["R"]).all()
     (tmp_path / "linked").symlink_to(rendered)
     assert run("denoise", rendered, "-o", tmp_path / "linked") == 2
     assert "expected an output folder other than the input's" in capsys.readouterr().err

@@ -14,7 +14,7 @@ from svgf_cl.check.noise import has_noisy_depth
 from svgf_cl.cli import remarks
 from svgf_cl.compare.metrics import flip, psnr, ssim, why_no_flip
 from svgf_cl.io.display import display
-from svgf_cl.io.exr import read_channels, read_image, write_channels
+from svgf_cl.io.exr import read_image, write_channels
 from svgf_cl.io.frames import read_frame, write_frame
 from svgf_cl.io.pictures import read_picture
 from svgf_cl.io.readers import READERS
@@ -107,7 +107,7 @@ def test_sizes_that_differ(frames: Path, refused) -> None:
 
 
 def test_an_absent_field(frames: Path, refused) -> None:
-    planes = read_channels(frames / NAMES[0])
+    planes = read_image(frames / NAMES[0]).planes
     write_channels(frames / NAMES[0], {n: p for n, p in planes.items() if not n.startswith("normal")})
     refused("expected channels normal.X normal.Y normal.Z, found R G B", "denoise", frames, "-o", frames / "out")
 
@@ -149,7 +149,7 @@ def test_another_filter(rendered: Path, tmp_path: Path) -> None:
     assert run("denoise", rendered, "-o", tmp_path / "eaw", "--filter", "eaw", "--set", "sigma_color=2") == 0
     assert run("denoise", rendered, "-o", tmp_path / "svgf") == 0
     for name in NAMES:
-        one, other = (read_channels(tmp_path / kind / name) for kind in ("eaw", "svgf"))
+        one, other = (read_image(tmp_path / kind / name).planes for kind in ("eaw", "svgf"))
         assert one.keys() == other.keys()
         assert any((one[channel] != other[channel]).any() for channel in one)
 
@@ -166,7 +166,7 @@ def test_all_but_the_light_passes_through(rendered: Path, tmp_path: Path, capsys
     light = {*"RGB", *(f"{name}.{c}" for name in ("direct", "indirect") for c in "RGB")}
     for name in NAMES:
         noisy, clean, plain = (read_image(folder / name) for folder in (rendered, tmp_path / "out", tmp_path / "plain"))
-        picture = read_channels(tmp_path / "picture" / name)
+        picture = read_image(tmp_path / "picture" / name).planes
         assert clean.planes.keys() == noisy.planes.keys() > plain.planes.keys() == {"R", "G", "B"}
         assert changed(noisy.planes, clean.planes) == light
         assert changed(noisy.planes, picture) == {"R", "G", "B"}
@@ -190,14 +190,14 @@ def test_another_attribute_or_channel_is_written_though_the_picture_is_the_same(
     frames: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run("denoise", frames, "-o", tmp_path / "out") == 0
-    planes = read_channels(frames / NAMES[0])
+    planes = read_image(frames / NAMES[0]).planes
     write_channels(frames / NAMES[0], planes, {"owner": "me"})
-    write_channels(frames / NAMES[1], {**read_channels(frames / NAMES[1]), "A": np.ones_like(planes["R"])})
+    write_channels(frames / NAMES[1], {**read_image(frames / NAMES[1]).planes, "A": np.ones_like(planes["R"])})
     capsys.readouterr()
     assert run("denoise", frames, "-o", tmp_path / "out") == 0
     assert "1 of them kept" in capsys.readouterr().out
     assert read_image(tmp_path / "out" / NAMES[0]).parts[0].attributes["owner"] == ("string", b"me")
-    assert "A" in read_channels(tmp_path / "out" / NAMES[1])
+    assert "A" in read_image(tmp_path / "out" / NAMES[1]).planes
 
 
 def test_a_window_that_moves_over_a_still_picture_changes_nothing(tmp_path: Path) -> None:
@@ -208,7 +208,8 @@ def test_a_window_that_moves_over_a_still_picture_changes_nothing(tmp_path: Path
     for name, color, x in zip((*NAMES, "frame.0003.exr"), noise, (0, 3, 8, 2), strict=True):
         write_frame(tmp_path / "whole" / name, wall((16, 40), color=color))
         cut = {
-            key: np.ascontiguousarray(plane[:, x:]) for key, plane in read_channels(tmp_path / "whole" / name).items()
+            key: np.ascontiguousarray(plane[:, x:])
+            for key, plane in read_image(tmp_path / "whole" / name).planes.items()
         }
         (tmp_path / "moving" / name).write_bytes(exr_bytes(cut, at=(x, 0), display=display))
     for kind in ("whole", "moving"):
@@ -259,7 +260,9 @@ def test_frames_of_a_renderer_are_denoised_as_if_they_were_our_own(
     assert run("denoise", folder, "-o", tmp_path / "out", "--plain", *alone) == 0
     assert f"read as {READERS[renderer].title}" in capsys.readouterr().out
     for number in NUMBERS:
-        found, expected = (read_channels(tmp_path / kind / f"frame.{number:04d}.exr") for kind in ("out", "expected"))
+        found, expected = (
+            read_image(tmp_path / kind / f"frame.{number:04d}.exr").planes for kind in ("out", "expected")
+        )
         for c in "RGB":
             np.testing.assert_allclose(found[c], expected[c], rtol=tolerance, atol=tolerance)
 
@@ -285,7 +288,7 @@ def test_what_is_denoised_is_added_as_a_layer(tmp_path: Path) -> None:
     assert run("denoise", folder, "-o", tmp_path / "out") == 0
     assert run("denoise", folder, "-o", tmp_path / "layer", "--layer", "Denoised") == 0
     for path in sorted(folder.iterdir()):
-        noisy, clean, both = (read_channels(p / path.name) for p in (folder, tmp_path / "out", tmp_path / "layer"))
+        noisy, clean, both = (read_image(p / path.name).planes for p in (folder, tmp_path / "out", tmp_path / "layer"))
         assert not changed(noisy, both)
         added = both.keys() - noisy.keys()
         assert added == {f"Denoised.{name}.{c}" for name in ("Combined", "DiffDir", "DiffInd") for c in "RGB"}
@@ -301,7 +304,7 @@ def test_one_view_layer_of_two_is_denoised(tmp_path: Path, refused) -> None:
     )
     refused("expected a view layer 'Sky', found Fog, Set", "denoise", folder, "-o", tmp_path, "--view-layer", "Sky")
     assert run("denoise", folder, "-o", tmp_path / "out", "--view-layer", "Set") == 0
-    before, after = (read_channels(p / "shot_0002.exr") for p in (folder, tmp_path / "out"))
+    before, after = (read_image(p / "shot_0002.exr").planes for p in (folder, tmp_path / "out"))
     assert {name.split(".")[0] for name in changed(before, after)} == {"Set"}
 
 

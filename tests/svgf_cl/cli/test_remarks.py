@@ -11,7 +11,7 @@ import pytest
 from svgf_cl import Frame, SvgfError
 from svgf_cl.cli import remarks
 from svgf_cl.cli.remarks import described
-from svgf_cl.io.exr import read_channels, write_channels
+from svgf_cl.io.exr import read_image, write_channels
 from svgf_cl.io.frames import frame_path, write_frame
 from svgf_cl.io.separate import SeparateFiles
 from svgf_cl.io.shot import Shot
@@ -98,7 +98,7 @@ def test_an_error_names_what_a_field_may_be(tmp_path: Path, room: list[Frame], f
     folder = written(tmp_path, room[:1])
     old, new = field.partition(".")[0], other.partition(".")[0]
     planes = {name.replace(f"{old}.Z", "Z") if other == "Z" else name.replace(old, new): plane
-              for name, plane in read_channels(folder / "frame.0000.exr").items()}  # fmt: skip
+              for name, plane in read_image(folder / "frame.0000.exr").planes.items()}  # fmt: skip
     write_channels(folder / "frame.0000.exr", planes)
     refused(f"{other}", "denoise", folder, "-o", tmp_path / "out")
     refused(f"like {old}: if it is, give --map {old}={new}", "denoise", folder, "-o", tmp_path / "out")

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from svgf_cl import ArgumentError, Camera, motion_from_cameras
 from svgf_cl.errors import FileError
 from svgf_cl.io.cameras import NAME, camera_of_header, read_cameras
-from svgf_cl.io.exr import read_attributes, read_channels
+from svgf_cl.io.exr import read_attributes, read_image
 
 SAMPLES = Path(__file__).parents[4] / "shared" / "samples"
 MITSUBA = SAMPLES / "mitsuba"
@@ -227,7 +227,7 @@ needs_mitsuba = pytest.mark.skipif(not MITSUBA.exists(), reason=f"{MITSUBA} is n
 
 def mitsuba(frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Positions (NaN where nothing was hit), normals and distances of a frame."""
-    planes = read_channels(MITSUBA / "noisy" / f"cbox.{frame:04d}.exr")
+    planes = read_image(MITSUBA / "noisy" / f"cbox.{frame:04d}.exr").planes
     position, normal = (np.stack([planes[f"{name}.{axis}"] for axis in "XYZ"], -1) for name in ("pp", "nn"))
     return np.where((normal != 0).any(-1, keepdims=True), position, np.nan), normal, planes["dd.T"]
 

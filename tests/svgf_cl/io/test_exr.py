@@ -17,7 +17,7 @@ import pytest
 
 from svgf_cl import FileError
 from svgf_cl.io import exr
-from svgf_cl.io.exr import read_attribute, read_channels, write_channels
+from svgf_cl.io.exr import read_attribute, read_image, write_channels
 from tests.disk import files_up_to, unprivileged
 
 RNG = np.random.default_rng(5)
@@ -32,7 +32,7 @@ def path(tmp_path: Path) -> Path:
 
 
 def assert_whole(path: Path) -> None:
-    found = read_channels(path)
+    found = read_image(path).planes
     assert found.keys() == PLANES.keys()
     for name, plane in PLANES.items():
         np.testing.assert_array_equal(found[name], plane, strict=True)
@@ -52,7 +52,7 @@ def test_halves_and_integers_are_read_as_the_numbers_they_are(tmp_path: Path) ->
     assert output.open(str(path), spec)
     assert output.write_image(values)
     output.close()
-    found = read_channels(path)
+    found = read_image(path).planes
     np.testing.assert_array_equal(found["R"], np.full((3, 4), 0.1, np.float16), strict=True)
     np.testing.assert_array_equal(found["id"], np.arange(12, dtype=np.uint32).reshape(3, 4) * 1000, strict=True)
 
@@ -71,7 +71,7 @@ def test_a_name_that_is_no_text_is_refused(tmp_path: Path) -> None:
         write_channels(path, PLANES)
     path.touch()
     with pytest.raises(FileError, match=r"udcff.*: expected a name in UTF-8"):
-        read_channels(path)
+        read_image(path)
     assert list(tmp_path.iterdir()) == [path]
 
 
@@ -96,12 +96,12 @@ def test_a_name_that_is_no_text_is_refused(tmp_path: Path) -> None:
 def test_what_is_no_exr_file_is_refused(make: Callable[[Path], object], words: str, tmp_path: Path) -> None:
     make(tmp_path / "a.exr")
     with pytest.raises(FileError, match=rf"a\.exr: .*{words}"):
-        read_channels(tmp_path / "a.exr")
+        read_image(tmp_path / "a.exr")
 
 
 def test_a_file_behind_a_closed_door_is_refused(path: Path) -> None:
     with unprivileged(path.parent), pytest.raises(FileError, match=r"a\.exr: cannot be read \(Permission denied\)"):
-        read_channels(path)
+        read_image(path)
 
 
 # Damage
@@ -112,7 +112,7 @@ def test_a_file_cut_off_anywhere_is_refused(path: Path) -> None:
     for length in range(len(content)):
         path.write_bytes(content[:length])
         with pytest.raises(FileError, match=r"a\.exr: expected"):
-            read_channels(path)
+            read_image(path)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -127,7 +127,7 @@ def test_a_file_with_wrong_bits_is_refused_or_has_planes(seed: int, path: Path) 
         damaged[places] ^= (1 << rng.integers(0, 8, len(places))).astype(np.uint8)
         path.write_bytes(damaged.tobytes())
         try:
-            shapes = {plane.shape for plane in read_channels(path).values()}
+            shapes = {plane.shape for plane in read_image(path).planes.values()}
             assert len(shapes) == 1
         except FileError as error:
             assert str(path) in str(error)  # noqa: PT017  # either will do
@@ -138,7 +138,7 @@ def test_a_file_with_wrong_bits_is_refused_or_has_planes(seed: int, path: Path) 
 def test_a_header_that_is_no_text_is_refused(path: Path) -> None:
     path.write_bytes(path.read_bytes().replace(b"chlist", b"chl\xffst"))
     with pytest.raises(FileError, match=r"a\.exr: expected text in UTF-8 in its header"):
-        read_channels(path)
+        read_image(path)
 
 
 # Headers
@@ -189,12 +189,12 @@ READ_ALL = """
 import json, resource, sys
 from pathlib import Path
 from svgf_cl import FileError
-from svgf_cl.io.exr import read_channels
+from svgf_cl.io.exr import read_image
 peak = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
 said, before = {}, peak()
 for path in sorted(Path(sys.argv[1]).iterdir()):
     try:
-        read_channels(path)
+        read_image(path)
     except FileError as error:
         said[path.name] = str(error)
 Path(sys.argv[2]).write_text(json.dumps([said, peak() - before]))  # OpenEXR prints what is wrong, too
@@ -220,7 +220,7 @@ def test_more_pixels_than_a_file_can_hold_are_refused(path: Path, monkeypatch: p
     assert_whole(path)
     monkeypatch.setattr(exr, "TRUSTED", 11 * 7 * 16 - 1)
     with pytest.raises(FileError, match=r"a\.exr: expected a complete image, got 1232 bytes of pixels in a file of"):
-        read_channels(path)
+        read_image(path)
 
 
 def test_what_compresses_best_is_read(tmp_path: Path) -> None:
@@ -235,7 +235,7 @@ def test_too_little_memory_names_the_file(path: Path, monkeypatch: pytest.Monkey
 
     monkeypatch.setattr(exr.OpenEXR, "File", full)
     with pytest.raises(FileError, match=r"a\.exr: expected an image that fits into memory"):
-        read_channels(path)
+        read_image(path)
 
 
 # Writing

@@ -13,7 +13,7 @@ from hypothesis.extra import numpy as hnp
 
 from svgf_cl import FileError, Frame, FrameError
 from svgf_cl.frame import CARRIED, CHANNELS
-from svgf_cl.io.exr import read_channels, write_channels
+from svgf_cl.io.exr import read_image, write_channels
 from svgf_cl.io.frames import (
     CHANNEL_NAMES,
     MAX_ID,
@@ -64,7 +64,7 @@ def test_alpha_is_written(tmp_path: Path) -> None:
     path = tmp_path / "frame.0000.exr"
     rgba = np.random.default_rng(0).random((3, 4, 4), np.float32)
     write_frame(path, plain_frame(color=rgba))
-    np.testing.assert_array_equal(read_channels(path)["A"], rgba[..., 3])
+    np.testing.assert_array_equal(read_image(path).planes["A"], rgba[..., 3])
     np.testing.assert_array_equal(read_frame(path).color, rgba[..., :3])
 
 
@@ -78,7 +78,7 @@ def test_a_great_id_is_refused_and_leaves_no_file(tmp_path: Path) -> None:
 def test_an_id_that_is_no_whole_number_is_refused(tmp_path: Path, value: float) -> None:
     path = tmp_path / "frame.0000.exr"
     write_frame(path, plain_frame(id=np.ones((3, 4), np.uint32)))
-    write_channels(path, {**read_channels(path), "id": np.full((3, 4), value, np.float32)})
+    write_channels(path, {**read_image(path).planes, "id": np.full((3, 4), value, np.float32)})
     with pytest.raises(FileError, match=r"frame\.0000\.exr: expected whole numbers.*unsigned integers"):
         read_frame(path)
 
@@ -91,7 +91,7 @@ def test_an_absent_channel_is_named_with_those_found(tmp_path: Path, channel: st
     optional = ("albedo", "emission", "direct", "indirect", *CARRIED)
     fields = {name: np.ones((3, 4, *filter(None, CHANNELS[name])), np.float32) for name in optional}
     write_frame(path, plain_frame(**fields))
-    planes = read_channels(path)
+    planes = read_image(path).planes
     del planes[channel]
     write_channels(path, planes)
     with pytest.raises(FileError, match=rf"frame\.0000\.exr: expected channels .*{channel}.*, found "):
@@ -101,7 +101,7 @@ def test_an_absent_channel_is_named_with_those_found(tmp_path: Path, channel: st
 def test_a_frame_without_any_radiance_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "frame.0000.exr"
     write_frame(path, plain_frame())
-    planes = {name: plane for name, plane in read_channels(path).items() if name not in CHANNEL_NAMES["color"]}
+    planes = {name: plane for name, plane in read_image(path).planes.items() if name not in CHANNEL_NAMES["color"]}
     write_channels(path, planes)
     with pytest.raises(FileError, match=r"frame\.0000\.exr: expected channels R G B, found .*depth\.Z"):
         read_frame(path)

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from svgf_cl import FileError
-from svgf_cl.io.exr import read_attribute, read_channels, read_image, read_windows, write_channels, write_image
+from svgf_cl.io.exr import read_attribute, read_image, read_windows, write_channels, write_image
 from svgf_cl.io.image import COMPRESSIONS, Image, new_image
 from svgf_cl.io.window import Window
 from tests.exr_files import exr_bytes
@@ -281,7 +281,7 @@ def write_parts(path: Path, parts: list[tuple[str, str]], first: Mapping[str, ob
 )  # fmt: skip
 def test_channels_of_all_parts_are_read_and_written(parts: list[tuple[str, str]], names: str, tmp_path: Path) -> None:
     write_parts(tmp_path / "in.exr", parts)
-    found = read_channels(tmp_path / "in.exr")
+    found = read_image(tmp_path / "in.exr").planes
     assert sorted(found) == sorted(names.split())
     assert sorted(plane[0, 0] for plane in found.values()) == sorted(
         index for index, (_, channels) in enumerate(parts) for _ in channels.split()
@@ -311,7 +311,7 @@ def test_parts_that_cannot_be_one_image_are_refused(parts, more: dict[str, objec
     else:
         write_parts(tmp_path / "in.exr", parts, **more)
     with pytest.raises(FileError, match=rf"in\.exr: {words}") as error:
-        read_channels(tmp_path / "in.exr")
+        read_image(tmp_path / "in.exr")
     assert "\n" not in str(error.value)
 
 
@@ -356,7 +356,7 @@ def test_channels_of_fewer_pixels_are_refused(names: str, tmp_path: Path) -> Non
     sparse = {name: 2 for name in planes if name in ("RY", "BY", "id")}
     (tmp_path / "a.exr").write_bytes(exr_bytes(planes, sampling=sparse))
     with pytest.raises(FileError, match=r"a\.exr: expected a value for every pixel in each channel") as error:
-        read_channels(tmp_path / "a.exr")
+        read_image(tmp_path / "a.exr")
     assert "\n" not in str(error.value)
 
 
@@ -367,7 +367,7 @@ def test_of_tiles_in_several_resolutions_the_finest_is_read(tmp_path: Path) -> N
     oiio.ImageBufAlgo.make_texture(oiio.MakeTxTexture, image, str(tmp_path / "tiled.exr"), oiio.ImageSpec())
     assert oiio.ImageInput.open(str(tmp_path / "tiled.exr")).spec().tile_width
     for path in (tmp_path / "tiled.exr", passed_on(tmp_path / "tiled.exr")):
-        planes = read_channels(path)
+        planes = read_image(path).planes
         np.testing.assert_array_equal(np.stack([planes[name] for name in "RGB"], axis=-1), picture)
 
 

@@ -15,7 +15,7 @@ import pytest
 
 from svgf_cl import FileError
 from svgf_cl.cli import plain_warnings
-from svgf_cl.io.exr import read_channels
+from svgf_cl.io.exr import read_image
 from svgf_cl.io.overlap import in_order
 
 SECONDS = 20  # that no test takes unless it hangs
@@ -151,4 +151,4 @@ def test_ctrl_c_ends_at_once_and_leaves_whole_files_alone(tmp_path: Path) -> Non
     assert len(left) >= 5
     for number, path in enumerate(left):
         assert path.name == f"frame.{number:04d}.exr"
-        assert read_channels(path)["R"].shape == (400, 600)
+        assert read_image(path).planes["R"].shape == (400, 600)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from svgf_cl.io.exr import read_channels
+from svgf_cl.io.exr import read_image
 from svgf_cl.io.frames import CHANNEL_NAMES, read_frame
 from svgf_cl.io.pictures import read_picture
 from svgf_cl_tracer import BUILTIN
@@ -22,9 +22,9 @@ LIGHTS = {"lights": 0.5, "alternative_lights": 2.0}
 
 def test_render_writes_every_field_of_every_frame(rendered: Path) -> None:
     assert sorted(path.name for path in rendered.glob("frame.*")) == NAMES
-    assert set(read_channels(rendered / NAMES[0])) == {name for names in CHANNEL_NAMES.values() for name in names}
+    assert set(read_image(rendered / NAMES[0]).planes) == {name for names in CHANNEL_NAMES.values() for name in names}
     assert read_frame(rendered / NAMES[0]).shape == (18, 32)
-    assert set(read_channels(rendered / "reference.0002.exr")) == {
+    assert set(read_image(rendered / "reference.0002.exr").planes) == {
         *(name for field, names in CHANNEL_NAMES.items() if field != "hit_distance" for name in names),
         *("error.R", "error.G", "error.B"),
     }
