@@ -5,16 +5,18 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pyopencl as cl
 import pytest
-from distributed import LocalCluster
 
 from svgf_cl.cli import log
 from svgf_cl.device import devices, tuning
 from svgf_cl.io import cache
-from tests.cluster import local_cluster
 from tests.command_line import run
+
+if TYPE_CHECKING:
+    from distributed import LocalCluster
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -66,6 +68,8 @@ def context(queue: cl.CommandQueue) -> cl.Context:
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[LocalCluster]:
     """A scheduler with `WORKERS` workers."""
+    from tests.cluster import local_cluster  # here: few tests need Dask, which takes a second to import
+
     with local_cluster() as cluster:
         yield cluster
 

@@ -20,6 +20,16 @@ def feed(*frames: Frame, kind: type[Filter] = Settings, **chosen: Any) -> tuple[
     return [den.denoise(frame) for frame in frames][-1], den
 
 
+@pytest.fixture(scope="module", autouse=True)
+def narrow_vectors() -> Iterator[None]:
+    """Vectors of 4, which PoCL compiles in half the time: for tests of what is around the kernels.
+
+    tests/kernels, tests/hard and tests/fuzz test the kernels with the width that a device is given by default.
+    """
+    with vector_width(4):
+        yield
+
+
 @contextmanager
 def vector_width(width: int | None, exponential: str = "polynomial") -> Iterator[None]:
     """Denoisers made inside treat so many pixels as one vector; None leaves it to the device."""

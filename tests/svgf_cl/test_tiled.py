@@ -112,7 +112,7 @@ def test_two_signals_a_cut_and_short_motion(name: str) -> None:
     assert_same(chosen, frames, made(chosen, frames[0], 1.2), cut_before=2)
 
 
-@pytest.mark.parametrize("width", [1, 4])
+@pytest.mark.parametrize("width", [1, 16])
 def test_other_vector_widths(width: int) -> None:
     frames = wild(bumpy_sequence(PLAIN, count=2, shape=SHAPE))
     with vector_width(width):
