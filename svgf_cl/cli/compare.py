@@ -15,9 +15,11 @@ import typer
 from svgf_cl import __version__
 from svgf_cl.cli.console import progress_bar, show
 from svgf_cl.cli.options import STDOUT, Exposure, check_files, parse_measured_size, parse_settings
+from svgf_cl.cli.reading import reads_frames, refuse_reading
 from svgf_cl.cli.verdict import leave_with
 from svgf_cl.errors import SvgfError, install_extra
 from svgf_cl.io.atomic import output_folder, require, write_text
+from svgf_cl.io.reading import ReadAs
 
 if TYPE_CHECKING:
     from svgf_cl.compare.footage import Footage
@@ -45,6 +47,7 @@ USUAL = Preset(
 QUICK = Preset(("cornell", "swing", "switch"), "320x180", 32, 12, 64)
 
 
+@reads_frames
 def compare(
     inputs: Annotated[
         list[str],
@@ -113,6 +116,8 @@ def compare(
             metavar="FILE", help="Also write all values there as JSON; '-' prints them on stdout instead of tables."
         ),
     ] = None,
+    *,
+    how: ReadAs,
 ) -> None:
     """Compare filters on scenes or on your own frames, or compare pictures with their references.
 
@@ -140,6 +145,8 @@ def compare(
         raise SvgfError("--junit: expected --fail-below or --fail-above too, got none")
     check_files(json, junit)
     is_made = reference is None and are_pictures(inputs)
+    if reference is None:
+        refuse_reading(how, "finished pictures" if is_made else "scenes")
     if is_made or reference is not None:
         refuse_rendering({"--quick": quick, "--size": size, "--frames": frames, "--judged": judged, "--spp": spp})
     if is_made:
@@ -148,7 +155,7 @@ def compare(
         rivals = chosen_rivals(filters)
         output = output or Path("out/compare")
         if reference is not None:
-            footages = [of_frames(inputs, reference, jitter=jitter)]
+            footages = [of_frames(inputs, reference, how, jitter=jitter)]
         else:
             preset = QUICK if quick else USUAL
             footages = of_scenes(inputs or preset.scenes, preset, (size, frames, judged, spp), jitter=jitter)
@@ -215,13 +222,13 @@ def of_pictures(inputs: Sequence[str], filters: str | None) -> Footage:
     return open_pictures(Path(inputs[0]), Path(inputs[1]))
 
 
-def of_frames(inputs: Sequence[str], reference: Path, *, jitter: bool) -> Footage:
+def of_frames(inputs: Sequence[str], reference: Path, how: ReadAs, *, jitter: bool) -> Footage:
     """Return the footage of a user's frames with references."""
     from svgf_cl.compare.recorded import open_frames
 
     if not inputs:
         raise SvgfError("--reference: expected frames too, got none")
-    return open_frames([Path(text) for text in inputs], reference, jitter=jitter)
+    return open_frames([Path(text) for text in inputs], reference, how, jitter=jitter)
 
 
 def of_scenes(

@@ -97,6 +97,12 @@ def read_as(
     )
 
 
+def refuse_reading(how: ReadAs, found: str) -> None:
+    """Raise `SvgfError` if an option of reading is given, but this was found in place of frames."""
+    if how != ReadAs():
+        raise SvgfError(f"--format, --map and other options of reading: expected frames in files, got {found}")
+
+
 def parse_maps(texts: Sequence[str]) -> Mapping[str, str]:
     """Read ``["depth=Z,normal=N"]`` as a mapping of fields to passes."""
     found = {}

@@ -20,7 +20,7 @@ from svgf_cl.cli.options import (
     parse_measured_size,
     parse_settings,
 )
-from svgf_cl.cli.reading import reads_frames
+from svgf_cl.cli.reading import reads_frames, refuse_reading
 from svgf_cl.cli.remarks import described
 from svgf_cl.errors import SvgfError
 from svgf_cl.filters import DEFAULT
@@ -100,7 +100,8 @@ def view(
     if is_files:
         refuse_rendering({"--size": size, "--frames": frames, "--spp": spp, "--jitter": jitter})
     else:
-        refuse_files({"--reference": reference, "--allow-gaps": allow_gaps, "options of reading": how != ReadAs()})
+        refuse_reading(how, "a scene")
+        refuse_files({"--reference": reference, "--allow-gaps": allow_gaps})
     shape = parse_measured_size(size or SIZE)
     with Server(port) as server:  # a port in use is reported before anything is rendered
         if is_files:

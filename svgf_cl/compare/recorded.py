@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -17,6 +17,7 @@ from svgf_cl.io.atomic import require
 from svgf_cl.io.display import Linear
 from svgf_cl.io.exr import read_windows
 from svgf_cl.io.pictures import read_picture
+from svgf_cl.io.reading import ReadAs
 from svgf_cl.io.sequence import after_gaps, find_frames, find_numbered, frame_number, number_of
 from svgf_cl.io.shot import Shot, moved
 
@@ -33,11 +34,14 @@ class Recorded:
         The references' files by number; each number is also in `paths`.
     jitter : bool
         Whether the renderer moved its rays within the pixel; filters then antialias over time.
+    how : ReadAs
+        How to read the frames.
     """
 
     paths: Mapping[int, Path]
     references: Mapping[int, Path]
     jitter: bool
+    how: ReadAs = field(default_factory=ReadAs)
 
     @property
     def note(self) -> str:
@@ -68,10 +72,12 @@ class Recorded:
 
     @property
     def identity(self) -> str:
-        """Names, sizes and times of all files, and `jitter`."""
+        """Names, sizes and times of all files, how frames are read, and `jitter`."""
         files = [*self.paths.values(), *self.references.values()]
+        if isinstance(self.how.cameras, Path):
+            files.append(self.how.cameras)
         stamps = [f"{path.resolve()}:{path.stat().st_size}:{path.stat().st_mtime_ns}" for path in files]
-        return " ".join((*stamps, f"jitter={self.jitter}"))
+        return " ".join((*stamps, f"jitter={self.jitter}", repr(self.how)))
 
     @cached_property
     def shape(self) -> Shape:
@@ -88,7 +94,7 @@ class Recorded:
     def frames(self) -> Iterator[Frame]:
         """Yield the frames as `svgf-cl denoise` reads them, cut to their display window, which references show."""
         paths = [self.paths[number] for number in self.numbers]
-        shot = Shot(paths)
+        shot = Shot(paths, self.how)
         display = read_windows(paths[0]).display
         for path, frame in zip(paths, shot, strict=True):
             shown = moved(frame, shot.window, display)
@@ -118,7 +124,7 @@ class Pictures(Recorded):
             yield bare_frame(picture)
 
 
-def open_frames(frames: Sequence[Path], reference: Path, *, jitter: bool) -> Recorded:
+def open_frames(frames: Sequence[Path], reference: Path, how: ReadAs, *, jitter: bool) -> Recorded:
     """Open frames (files or their folder) and their references (a picture or a folder of pictures).
 
     Raises
@@ -130,7 +136,7 @@ def open_frames(frames: Sequence[Path], reference: Path, *, jitter: bool) -> Rec
     for path in sorted(after_gaps(files)):
         raise FileError(f"{path}: expected the previous frame, which filters need, found none")
     paths = {number_of(path): path for path in files}
-    return Recorded(paths, find_references(reference, list(paths)), jitter)
+    return Recorded(paths, find_references(reference, list(paths)), jitter, how)
 
 
 def find_references(reference: Path, numbers: Sequence[int]) -> dict[int, Path]:

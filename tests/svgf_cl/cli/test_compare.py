@@ -208,6 +208,7 @@ def test_only_some_frames_may_have_a_reference(frames: Path, tmp_path: Path) -> 
         ("--filters: expected scenes, or frames with --reference", ["--filters", "svgf"]),
         ("--size: expected scenes to render", ["--size", "64x36"]),
         ("--quick: expected scenes to render", ["--quick"]),
+        ("options of reading: expected frames in files, got finished pictures", ["--format", "blender"]),
     ],
 )
 def test_wrong_options_beside_pictures(words: str, options: list[str], rendered: Path, refused) -> None:
@@ -224,6 +225,7 @@ def test_wrong_options_beside_pictures(words: str, options: list[str], rendered:
         ("no settings of oidn, got quality=fast", ["--filters", "oidn,quality=fast"]),
         ("--filters iterations: expected", ["--filters", "svgf,iterations=many"]),
         ("--spp: expected scenes to render", ["--spp", "64"]),
+        ("--motion-flip: expected x, y or xy", ["--motion-flip", "z"]),
     ],
 )
 def test_wrong_options_beside_frames(
@@ -237,6 +239,10 @@ def test_wrong_options_beside_frames(
 def test_scenes_and_pictures_do_not_mix(rendered: Path, refused) -> None:
     refused("got both: swing is a scene", "compare", "swing", rendered)
     refused("got both: room.glb is a scene", "compare", rendered / FIRST, "room.glb")
+
+
+def test_scenes_are_not_read(refused) -> None:
+    refused("options of reading: expected frames in files, got scenes", "compare", "swing", "--still-camera")
 
 
 def test_frames_alone_have_nothing_to_be_held_against(rendered: Path, refused) -> None:

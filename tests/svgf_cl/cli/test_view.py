@@ -75,7 +75,7 @@ def test_the_browser_is_opened(monkeypatch: pytest.MonkeyPatch) -> None:
         ("--spp: expected a scene, got none", ["--spp", "8"]),
         ("--jitter: expected a scene, got none", ["--jitter"]),
         ("--reference: expected frames in files, got a scene", ["--reference", "pictures"]),
-        ("options of reading: expected frames in files", ["cornell", "--map", "depth=Z"]),
+        ("other options of reading: expected frames in files, got a scene", ["cornell", "--map", "depth=Z"]),
         ("expected one scene, or only frames, got 2 arguments", ["cornell", "swing"]),
         ("'--port'", ["--port", "70000"]),
     ],

@@ -7,6 +7,7 @@ import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,8 +18,10 @@ from svgf_cl.errors import FileError
 from svgf_cl.io.exr import read_image, write_image
 from svgf_cl.io.frames import frame_path, write_frame
 from svgf_cl.io.pictures import write_picture
+from svgf_cl.io.reading import ReadAs
 from svgf_cl.io.synthetic import room_frames
 from svgf_cl.io.window import Window
+from tests.renderers import cameras_file
 
 SHAPE = (12, 16)
 FRAMES = list(room_frames(SHAPE, 3, signals=2))
@@ -51,7 +54,7 @@ def shot(tmp_path: Path) -> Path:
 
 
 def test_frames_are_what_is_denoised_and_some_have_a_reference(shot: Path) -> None:
-    found = open_frames([shot], shot, jitter=True)
+    found = open_frames([shot], shot, ReadAs(), jitter=True)
     assert (found.name, found.shape, found.steps) == ("shot", SHAPE, 2)
     assert (list(found.numbers), list(found.judged)) == ([7, 8, 9], [7, 9])
     for have, want in zip(found.frames(), FRAMES, strict=True):
@@ -65,7 +68,7 @@ def test_frames_are_what_is_denoised_and_some_have_a_reference(shot: Path) -> No
 
 
 def test_it_is_said_whether_filters_antialias(shot: Path) -> None:
-    notes = [open_frames([shot], shot, jitter=jitter).note.split(";")[0] for jitter in (True, False)]
+    notes = [open_frames([shot], shot, ReadAs(), jitter=jitter).note.split(";")[0] for jitter in (True, False)]
     assert notes == ["antialiased over time", "not antialiased"]
 
 
@@ -73,7 +76,7 @@ def test_it_is_said_whether_filters_antialias(shot: Path) -> None:
 def test_a_frame_without_a_colour_gets_that_of_its_signals(emission: np.ndarray | None, tmp_path: Path) -> None:
     write_frame(tmp_path / "frame.exr", replace(FRAMES[0], color=None, emission=emission))
     write_picture(tmp_path / "truth.exr", grey(0))
-    (frame,) = open_frames([tmp_path / "frame.exr"], tmp_path / "truth.exr", jitter=False).frames()
+    (frame,) = open_frames([tmp_path / "frame.exr"], tmp_path / "truth.exr", ReadAs(), jitter=False).frames()
     expected = FRAMES[0].direct + FRAMES[0].indirect + (0.0 if emission is None else emission)
     np.testing.assert_allclose(frame.color, expected, rtol=1e-6)
 
@@ -86,45 +89,60 @@ def test_frames_are_cut_to_the_window_that_references_show(tmp_path: Path) -> No
     windows = replace(image.windows, data=Window(1, 1, width, height), display=Window(0, 0, width, height))
     write_image(tmp_path / "frame.exr", replace(image, windows=windows))
     write_picture(tmp_path / "truth.exr", grey(0))
-    (frame,) = open_frames([tmp_path / "frame.exr"], tmp_path / "truth.exr", jitter=False).frames()
+    (frame,) = open_frames([tmp_path / "frame.exr"], tmp_path / "truth.exr", ReadAs(), jitter=False).frames()
     np.testing.assert_array_equal(frame.depth[1:, 1:], FRAMES[0].depth[:-1, :-1])
     assert np.isinf(frame.depth[0]).all()
     assert not frame.direct[:, 0].any()
 
 
 def test_one_frame_has_the_reference_whatever_the_numbers(shot: Path) -> None:
-    found = open_frames([shot / "frame.0008.exr"], shot / "reference.0009.exr", jitter=False)
+    found = open_frames([shot / "frame.0008.exr"], shot / "reference.0009.exr", ReadAs(), jitter=False)
     assert (found.name, list(found.judged)) == ("frame.0008", [8])
     assert found.references == {8: shot / "reference.0009.exr"}
 
 
 def test_one_reference_of_several_frames_goes_by_its_number(shot: Path) -> None:
-    assert open_frames([shot], shot / "reference.0009.exr", jitter=False).judged == [9]
+    assert open_frames([shot], shot / "reference.0009.exr", ReadAs(), jitter=False).judged == [9]
     nameless = Path(shutil.copy(shot / "reference.0009.exr", shot / "truth.exr"))
     with pytest.raises(FileError, match=r"truth\.exr: expected the number of one of the 3 frames in its name"):
-        open_frames([shot], nameless, jitter=False)
+        open_frames([shot], nameless, ReadAs(), jitter=False)
 
 
 def test_a_reference_without_its_frame_is_refused(shot: Path) -> None:
     write_picture(shot / "reference.0010.exr", grey(0))
     for reference in (shot, shot / "reference.0010.exr"):
         with pytest.raises(FileError, match=r"reference\.0010\.exr: expected a frame number 10 among the frames"):
-            open_frames([shot], reference, jitter=False)
+            open_frames([shot], reference, ReadAs(), jitter=False)
+
+
+def test_frames_are_read_as_they_should_be(shot: Path) -> None:
+    plain, flipped = (
+        next(open_frames([shot], shot, ReadAs(motion_scale=scale), jitter=False).frames())
+        for scale in ((1.0, 1.0), (-1.0, 2.0))
+    )
+    assert np.any(plain.motion)
+    np.testing.assert_array_equal(flipped.motion, plain.motion * (-1, 2, 1))
 
 
 def test_a_shot_that_lacks_a_frame_is_refused(shot: Path) -> None:
     (shot / "frame.0008.exr").unlink()
     with pytest.raises(FileError, match=r"frame\.0009\.exr: expected the previous frame"):
-        open_frames([shot], shot, jitter=False)
+        open_frames([shot], shot, ReadAs(), jitter=False)
 
 
 def test_the_inputs_have_a_name_that_changes_with_them(shot: Path) -> None:
-    def identity(jitter: bool = True) -> str:
-        return open_frames([shot], shot, jitter=jitter).identity
+    def identity(jitter: bool = True, **how: Any) -> str:
+        return open_frames([shot], shot, ReadAs(**how), jitter=jitter).identity
 
     before = identity()
     assert identity() == before
     assert identity(jitter=False) != before
+    assert identity(passes={"depth": "Z"}) != before
+    cameras = cameras_file(shot, (8, 9))
+    with_cameras = identity(cameras=cameras)
+    assert with_cameras != before
+    os.utime(cameras, (1, 1))
+    assert identity(cameras=cameras) != with_cameras
     os.utime(shot / "reference.0009.exr", (1, 1))
     assert identity() != before
 
@@ -184,7 +202,7 @@ def test_frames_of_another_size_than_their_references_are_refused(shot: Path) ->
     for number in (7, 9):
         write_picture(frame_path(shot, number, "reference"), grey(0, rows=14))
     with pytest.raises(FileError, match=r"frame\.0007\.exr: expected 16x14 pixels as in the references, got 16x12"):
-        next(open_frames([shot], shot, jitter=False).frames())
+        next(open_frames([shot], shot, ReadAs(), jitter=False).frames())
 
 
 def test_pictures_too_small_for_ssim_are_refused(tmp_path: Path) -> None:
