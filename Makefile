@@ -38,11 +38,12 @@ bench: device  ## time every kernel on every device, beside rival and error; rep
 gpu: $(READY)  ## test, tune and time a GPU in under ten minutes; report in out/gpu, see docs/gpu.md
 	$(BIN)/python -m benchmarks.gpu -o out/gpu
 
-docs: demo implementations  ## make docs/accuracy.md, docs/scene_description.md, the tables of docs/algorithm.md and docs/gpu.md and all pictures again
+docs: demo implementations  ## make docs/accuracy.md, docs/scene_description.md, docs/settings.md, the tables of docs/algorithm.md and docs/gpu.md and all pictures again
 	$(BIN)/python -m benchmarks.accuracy_page docs/accuracy.md
 	$(BIN)/python scripts/picture.py
 	$(BIN)/python -m scripts.view_picture
 	$(BIN)/python scripts/scene_description.py
+	$(BIN)/python scripts/settings_page.py
 	$(BIN)/python scripts/pass_table.py
 	$(BIN)/python -m benchmarks.gpu.roofline docs/gpu.md
 	$(BIN)/svgf-cl scenes -o docs/builtin_scenes.webp --size 320x180 --spp 128

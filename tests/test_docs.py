@@ -11,7 +11,7 @@ import pytest
 import typer
 from PIL import Image
 
-from scripts import pass_table, picture, scene_description
+from scripts import pass_table, picture, scene_description, settings_page
 from svgf_cl import chunks
 from svgf_cl.cli import application
 from svgf_cl.device import apart
@@ -69,6 +69,10 @@ def test_limits_in_the_pages_are_those_of_the_code(page: str, words: str) -> Non
 def test_the_description_of_scenes_is_up_to_date() -> None:
     written = (ROOT / scene_description.TARGET).read_text()
     assert written == scene_description.page(), "run scripts/scene_description.py"
+
+
+def test_the_page_of_settings_is_up_to_date() -> None:
+    assert (ROOT / settings_page.TARGET).read_text() == settings_page.page(), "run scripts/settings_page.py"
 
 
 def test_the_tables_of_passes_are_up_to_date() -> None:

@@ -9,6 +9,7 @@ import pytest
 import typer
 
 import svgf_cl
+from scripts import settings_page
 from scripts.site import reference
 from scripts.site.__main__ import MADE
 from scripts.site.contents import SECTIONS, sources
@@ -27,7 +28,7 @@ def test_everything_that_users_import_is_in_the_api() -> None:
 
 
 def test_the_settings_are_all_there_with_their_defaults() -> None:
-    page = reference.settings()
+    page = settings_page.page()
     for kind in FILTERS.values():
         part = page.split(f"\n## {kind.__name__}\n")[1].split("\n## ")[0]
         assert all(f"- **`{each.name}`** `= {each.default!r}`" in part for each in dataclasses.fields(kind))

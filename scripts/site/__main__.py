@@ -16,7 +16,7 @@ from scripts.site import reference
 from scripts.site.contents import ROOT, navigation, sources
 from scripts.site.links import PICTURES, for_site
 
-MADE = {"api.rst": reference.api, "settings.md": reference.settings, "command_line.md": reference.command_line}
+MADE = {"api.rst": reference.api, "command_line.md": reference.command_line}
 
 
 def write_pages(folder: Path) -> None:

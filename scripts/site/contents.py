@@ -20,7 +20,7 @@ OUTSIDE = {
 # The navigation: pages by the title of their section. The build fails if a page is missing here, or no longer exists.
 SECTIONS = {
     "Start": ("installation.md",),
-    "Use from Python": ("api.rst", "settings.md", "examples.md"),
+    "Use from Python": ("conventions.md", "api.rst", "settings.md", "examples.md"),
     "Use without Python": ("export.md", "c_host.md"),
     "Use on frames of your renderer": (
         "command_line.md",
@@ -36,7 +36,7 @@ SECTIONS = {
         "farm.md",
         "view.md",
     ),
-    "How it works": ("conventions.md", "algorithm.md", "lbf.md", "extending.md"),
+    "How it works": ("algorithm.md", "lbf.md", "extending.md"),
     "Performance and accuracy": ("results.md", "comparing.md", "benchmarks.md", "accuracy.md", "gpu.md"),
     "Scenes and the tracer": ("tracer.md", "builtin_scenes.md", "scenes.md", "scene_description.md", "references.md"),
     "Project": ("changelog.md", "contributing.md", "security.md"),

@@ -1,20 +1,17 @@
-"""The pages of the site that are made from the code: Python API, settings, command line."""
+"""The pages of the site that are made from the code: Python API, command line."""
 
 from __future__ import annotations
 
 import inspect
 import re
 from collections.abc import Iterator
-from dataclasses import fields
 from typing import Any
 
 import typer
 
 import svgf_cl
 from svgf_cl.cli import application
-from svgf_cl.filters import DEFAULT, FILTERS
 from svgf_cl.filters.filter import Filter
-from svgf_cl.settings import DOMAIN, REASON, UNIT
 
 Command = Any  # a command of click, or of the copy of click inside newer versions of typer
 
@@ -55,28 +52,6 @@ def documented(name: str) -> str:
     kind = "class" if inspect.isclass(thing) else "function"
     has_methods = kind == "class" and not issubclass(thing, (Filter, Exception))
     return f"\n.. auto{kind}:: svgf_cl.{name}\n" + ("   :members:\n" if has_methods else "") + "\n"
-
-
-def settings() -> str:
-    """The page about all filters' settings, from their declarations; Markdown."""
-    introduction = (
-        "# Settings\n\n"
-        "Every filter is a class of settings, such as `Kalman(iterations=3)`, for `Denoiser(..., settings=...)`; "
-        "on the command line: `svgf-cl denoise --filter kalman --set iterations=3`.\n"
-        f"`{DEFAULT.__name__}` is the default.\n"
-        "What the settings mean in the equations: [algorithm.md](algorithm.md).\n"
-    )
-    return introduction + "".join(settings_of(each) for each in FILTERS.values())
-
-
-def settings_of(kind: type[Filter]) -> str:
-    """The settings of one filter: default, values and unit of each, its meaning, and the reason for the default."""
-    summary = (kind.__doc__ or "").partition("\n")[0]
-    items = []
-    for each in fields(kind):
-        values = ", ".join(part for part in (str(each.metadata[DOMAIN]), each.metadata[UNIT]) if part)
-        items.append(f"- **`{each.name}`** `= {each.default!r}`, {values}.\\\n  {each.metadata[REASON]}\n")
-    return f"\n## {kind.__name__}\n{summary} `--filter {kind.name}`\n\n{''.join(items)}"
 
 
 def command_line() -> str:

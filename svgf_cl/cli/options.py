@@ -134,7 +134,7 @@ def settings_help() -> str:
     for text, filters in sorted(owners.items(), key=lambda item: -len(item[1])):
         groups.setdefault(tuple(filters), []).append(text)
     parts = [f"Of {spelled(filters)}: {'; '.join(texts)}" for filters, texts in groups.items()]
-    return f"Change a setting of the filter; may be repeated. {'. '.join(parts)}."
+    return f"Change a setting of the filter; may be repeated. docs/settings.md says what each does. {'. '.join(parts)}."
 
 
 def spelled(filters: Sequence[str]) -> str:
