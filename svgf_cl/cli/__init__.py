@@ -16,7 +16,7 @@ import typer
 from svgf_cl import __version__
 from svgf_cl.cli import bench, check, compare, denoise, devices, export, formats, tune, view
 from svgf_cl.cli.signals import terminated_like_interrupted
-from svgf_cl.errors import SvgfError, one_line
+from svgf_cl.errors import SvgfError, one_line, shown
 
 Command = Callable[..., None]
 
@@ -135,8 +135,7 @@ def leave(app: typer.Typer, arguments: Sequence[str], name: str, usage: str) -> 
     except SvgfError as error:
         complaint = str(error)
     except UsageError as error:
-        command = error.ctx.command_path if error.ctx else usage
-        complaint = " ".join(f"{error.format_message().rstrip('.')}; try '{command} --help'".split())
+        complaint = " ".join(f"{usage_complaint(error)}; try '{called(error, app, arguments, usage)} --help'".split())
     except MemoryError as error:
         complaint = f"not enough memory: {error}"
     except OSError as error:  # for a path that no command has checked
@@ -146,6 +145,24 @@ def leave(app: typer.Typer, arguments: Sequence[str], name: str, usage: str) -> 
         sys.exit(INTERRUPTED)
     print(f"{name}: {printable(complaint)}", file=sys.stderr)
     sys.exit(2)
+
+
+def usage_complaint(error: Any) -> str:
+    """Return what is wrong with an option or argument.
+
+    Typer checks some values with pydantic, whose messages do not say what was found: it is added.
+    """
+    complaint: str = error.format_message().rstrip(".")
+    details = getattr(error.__cause__, "errors", None)
+    return f"{complaint}, got {shown(details()[0]['input'])}" if callable(details) else complaint
+
+
+def called(error: Any, app: typer.Typer, arguments: Sequence[str], usage: str) -> str:
+    """Return the command that was called wrongly; for some errors typer does not know it."""
+    if error.ctx:
+        return str(error.ctx.command_path)
+    known = getattr(typer.main.get_command(app), "commands", ())
+    return f"{usage} {arguments[0]}" if arguments and arguments[0] in known else usage
 
 
 @contextmanager

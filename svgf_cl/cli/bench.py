@@ -62,7 +62,7 @@ def bench(
     filter_: FilterName = DEFAULT.name,
     set_: SettingTexts = [],  # noqa: B006
 ) -> None:
-    """Time every kernel and the whole frame, and compare them with the limits of the device.
+    """Time kernels and frames; compare them with the device's limits.
 
     Runs on every device that works, or on the one that PYOPENCL_CTX names. The input is a camera that moves in a
     built-in room, with albedo and ids. Event time is measured by the device, host time by the caller. Examples of

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from svgf_cl.check import Inspection
-from svgf_cl.cli.console import show, tracked
+from svgf_cl.cli.console import counted, show, tracked
 from svgf_cl.cli.options import AllowGaps, Frames
 from svgf_cl.cli.reading import reads_frames
 from svgf_cl.cli.remarks import described
@@ -61,7 +61,8 @@ def check(
     report = inspection.report()
     if output:
         draw(output, last)
-    title = f"{len(shot)} frames: {len(report.findings)} findings, {len(report.passed)} checks passed"
+    counts = counted(len(shot), "frame"), counted(len(report.findings), "finding"), counted(len(report.passed), "check")
+    title = "{}: {}, {} passed".format(*counts)
     if report.findings:
         rows = [(f.field, f.severity, f.what, f.measured, f.expected, f.cure) for f in report.findings]
         show(title, ("field", "severity", "found", "measured", "expected", "to do"), rows, words=6)

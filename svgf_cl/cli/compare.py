@@ -52,7 +52,7 @@ def compare(
     inputs: Annotated[
         list[str],
         typer.Argument(
-            metavar="[SCENE...|FRAMES|A B]",
+            metavar="SCENE|FRAMES|A B",
             help="Scenes to render; or, with --reference, the frames of one shot; or two pictures or folders of them, "
             "of which the second is the reference of the first. By default built-in scenes.",
         ),
@@ -119,7 +119,7 @@ def compare(
     *,
     how: ReadAs,
 ) -> None:
-    """Compare filters on scenes or on your own frames, or compare pictures with their references.
+    """Compare filters on scenes or on frames, or compare pictures.
 
     Scenes are rendered at 1 sample per pixel, filtered, and compared with a path-traced reference, which is stored in
     the user's cache folder. Frames are files that svgf-cl denoise reads. Pictures are EXR files (R, G, B). The page

@@ -88,6 +88,11 @@ def screen() -> Console:
     return Console(width=max(NARROW, Console().width) if terminal else WIDE)
 
 
+def counted(count: int, thing: str) -> str:
+    """Return a number of things as text: 1 frame, 2 frames."""
+    return f"{count} {thing}{'' if count == 1 else 's'}"
+
+
 def kept_of(count: int) -> str:
     """Return a text on how many files of an earlier run were kept; empty if none were."""
     return f", {count} of them kept from an earlier run" if count else ""
@@ -97,4 +102,4 @@ def show_times(profiles: Sequence[Mapping[str, float]]) -> None:
     """Print the median time of each pass; `profiles` has the milliseconds by pass for each frame."""
     times = {name: median(profile.get(name, 0.0) for profile in profiles) for name in profiles[-1]}
     rows = [(name, f"{time:.2f}") for name, time in (times | {"total": sum(times.values())}).items()]
-    show(f"time on the device, median of {len(profiles)} frames", ("pass", "ms"), rows)
+    show(f"time on the device, median of {counted(len(profiles), 'frame')}", ("pass", "ms"), rows)

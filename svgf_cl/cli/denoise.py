@@ -11,7 +11,7 @@ from typing import Annotated
 import typer
 
 from svgf_cl.chunks import CHUNK, WARM_UP, cut, denoise_on_cluster
-from svgf_cl.cli.console import kept_of, progress_bar, show_times
+from svgf_cl.cli.console import counted, kept_of, progress_bar, show_times
 from svgf_cl.cli.options import AllowGaps, Exposure, FilterName, Frames, SettingTexts, parse_settings
 from svgf_cl.cli.reading import reads_frames
 from svgf_cl.cli.remarks import Remarks, look_at_surfaces
@@ -110,12 +110,13 @@ def denoise(
     *,
     how: ReadAs,
 ) -> None:
-    """Denoise the EXR frames of a shot from Blender, Mitsuba, pbrt, Arnold, V-Ray or our own tracer.
+    """Denoise a shot: the EXR frames of a renderer.
 
-    The first file shows which renderer wrote the frames (svgf-cl formats lists what is read). One line says which
-    passes were found. The command writes one EXR file for each frame. It denoises the picture (linear HDR, 32-bit
-    floats) and the light passes that add up to it. Everything else in the file is unchanged: other channels,
-    Cryptomatte, windows, attributes. All frames must be of one shot, because each uses the frames before it.
+    The frames may come from Blender, Mitsuba, pbrt, Arnold, V-Ray or our own tracer. The first file shows which
+    renderer wrote them (svgf-cl formats lists what is read). One line says which passes were found. The command writes
+    one EXR file for each frame. It denoises the picture (linear HDR, 32-bit floats) and the light passes that add up
+    to it. Everything else in the file is unchanged: other channels, Cryptomatte, windows, attributes. All frames must
+    be of one shot, because each uses the frames before it.
 
     If it is interrupted, run the same command again. All frames are then filtered again, because each picture depends
     on all frames before it, but existing files with the same content are kept.
@@ -162,7 +163,7 @@ def denoise(
             kept += done.kept
             times.append(done.times)
     show_times(times)
-    print(f"{total} {'frame' if total == 1 else 'frames'} in {folder}{kept_of(kept)}")
+    print(f"{counted(total, 'frame')} in {folder}{kept_of(kept)}")
 
 
 def parse_effort(text: str) -> Effort:

@@ -54,12 +54,12 @@ def export(
         ),
     ] = None,
 ) -> None:
-    """Write a filter as OpenCL kernels and a plan of how to run them, for a renderer without Python.
+    """Write the kernels and a plan, for a renderer without Python.
 
-    The folder has kernels that can be compiled as they are, and plan.json. The plan lists the memory to allocate, the
-    kernels to launch in order with all their arguments, and what to do at a cut. docs/export.md describes it, and
-    examples/c_host runs it from C. A plan is for frames of one size with one set of fields. It runs on any device,
-    whatever its tuning.
+    The folder has the OpenCL kernels of one filter, which can be compiled as they are, and plan.json. The plan lists
+    the memory to allocate, the kernels to launch in order with all their arguments, and what to do at a cut.
+    docs/export.md describes it, and examples/c_host runs it from C. A plan is for frames of one size with one set of
+    fields. It runs on any device, whatever its tuning.
 
     \b
     Examples:

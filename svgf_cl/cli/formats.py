@@ -8,7 +8,7 @@ from svgf_cl.io.readers.reader import Reader
 
 
 def formats() -> None:
-    """List the renderers whose frames are read, and the passes that fields are read from.
+    """List the renderers whose frames are read, and their passes.
 
     A file shows which renderer wrote it; if it does not, use --format NAME with denoise and check. Upper case, spaces
     and punctuation in the names of passes do not matter. Read the passes of any other renderer with --map FIELD=PASS.

@@ -46,7 +46,7 @@ Exposure = Annotated[
     float,
     typer.Option(
         metavar="STOPS",
-        help="Brighten pictures that are shown, and display-referred measures.",
+        help="Brighten what is shown (PNG files, pages) and display-referred measures; EXR files do not change.",
         callback=check_exposure,
     ),
 ]

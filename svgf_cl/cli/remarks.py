@@ -36,7 +36,7 @@ def described(shot: Shot, first: ShotFrame) -> str:
     light = [light.channels for light in reading.lights if light.filtered]
     files = {field: next(iter(paths.values())).name for field, paths in shot.separate.paths.items()}
     read = ", ".join(f"{name} ({files.get(name) or grouped(channels)})" for name, channels in names.items())
-    parts = [f"read as {reading.reader.title}: {read}"]
+    parts = [f"read as frames of {reading.reader.title}: {read}"]
     if shot.camera_file:
         parts.append(f"cameras: {shot.camera_file}")
     if light:

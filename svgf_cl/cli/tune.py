@@ -33,12 +33,12 @@ def tune(
     store: Annotated[bool, typer.Option(help="Store the result, or only print it.")] = True,
     reset: Annotated[bool, typer.Option("--reset", help="Delete the stored result of this device, and exit.")] = False,
 ) -> None:
-    """Find the fastest settings of this device, and store them for this device and driver.
+    """Find and store the fastest settings of this device.
 
     Compares vector widths, exponentials, work-groups and alignments of rows with the default on a built-in room, in
     less than a minute. It stores the fastest, which later runs use; if nothing is faster beyond noise, it stores the
-    default. On devices with memory of their own it then tries copies through pinned memory. Pictures stay the same
-    apart from rounding. PYOPENCL_CTX chooses another device.
+    default. The result is for this device with this driver. On devices with memory of their own it then tries copies
+    through pinned memory. Pictures stay the same apart from rounding. PYOPENCL_CTX chooses another device.
 
     If the machine was too busy for a reliable result, nothing is stored and the exit code is 1: there was no time for
     all candidates, or the default's own time varied too much. Then stop other programs or choose a smaller --size,

@@ -39,7 +39,7 @@ def view(
     inputs: Annotated[
         list[str],
         typer.Argument(
-            metavar="[FRAMES|SCENE]",
+            metavar="FRAMES|SCENE",
             help="The EXR files of one shot, as for svgf-cl denoise; or a scene to render. By default a room that "
             "needs no files.",
         ),
@@ -77,11 +77,11 @@ def view(
     *,
     how: ReadAs,
 ) -> None:
-    """Play noisy, denoised and reference pictures side by side in the browser, to see flicker.
+    """Play noisy and denoised frames in the browser, to see flicker.
 
-    You can change filter and settings while it plays. Frames of files are denoised as svgf-cl denoise does. Scenes are
-    rendered at 1 sample per pixel while they are first played, and stay in memory. Only this machine can reach the
-    page. Ctrl-C ends it.
+    Noisy, denoised and reference pictures are side by side. You can change filter and settings while they play. Frames
+    of files are denoised as svgf-cl denoise does. Scenes are rendered at 1 sample per pixel while they are first
+    played, and stay in memory. Only this machine can reach the page. Ctrl-C ends it.
 
     \b
     Examples:

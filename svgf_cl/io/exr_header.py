@@ -42,7 +42,8 @@ def read_header(path: Path) -> list[Attributes]:
     with path.open("rb") as file:
         begins = file.read(len(MAGIC))
         if begins != MAGIC:
-            raise ValueError(f"expected an OpenEXR file, got one that begins with {begins!r}")
+            found = f"one that begins with {begins!r}" if begins else "an empty file"
+            raise ValueError(f"expected an OpenEXR file, got {found}")
         with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
             parts, _ = _parsed(content)
     return parts

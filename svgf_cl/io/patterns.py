@@ -34,8 +34,16 @@ def expanded(path: Path) -> list[Path]:
     else:
         found = [entry for entry in path.parent.glob(path.name) if not entry.name.startswith(".")]
     if not found:
-        raise FileError(f"{path}: expected files of this pattern, found none")
+        raise FileError(f"{path}: expected files of this pattern, found none{neighbour(path)}")
     return sorted(found)
+
+
+def neighbour(path: Path) -> str:
+    """Return, for a message, a file that is there although it does not match the pattern; empty if there is none."""
+    suffix = path.suffix.lower()
+    visible = (entry for entry in entries(path.parent) if not entry.name.startswith("."))
+    names = sorted(entry.name for entry in visible if entry.suffix.lower() == suffix != "")
+    return f"; the folder has {shown(names[0])}" if names else ""
 
 
 def has_number(path: Path) -> bool:

@@ -52,7 +52,7 @@ def whole_numbers(plane: Array) -> Array:
 
 OWN = Reader(
     name="svgf_cl",
-    title="svgf_cl, or a renderer with its channel names",
+    title="svgf_cl, or of another renderer with its channel names",
     recognises=recognises,
     passes={
         field: (Exactly(names, (OPTIONAL,), whole_numbers if field == "id" else None),)

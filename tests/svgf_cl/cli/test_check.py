@@ -48,7 +48,7 @@ def test_a_mistake_is_in_the_table_and_in_the_exit_code(
     wrong = [replace(frame, motion=frame.motion * np.float32([-1, -1, 1])) for frame in room]
     assert run(written(tmp_path, wrong)) == 1
     said = " ".join(capsys.readouterr().out.split())
-    for words in ("3 frames: 1 findings", "motion", "error", "points the other", "negate it"):
+    for words in ("3 frames: 1 finding,", "motion", "error", "points the other", "negate it"):
         assert words in said
 
 

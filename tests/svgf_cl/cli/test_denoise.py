@@ -258,7 +258,7 @@ def test_frames_of_a_renderer_are_denoised_as_if_they_were_our_own(
     assert run("denoise", tmp_path / "own", "-o", tmp_path / "expected", *alone) == 0
     capsys.readouterr()
     assert run("denoise", folder, "-o", tmp_path / "out", "--plain", *alone) == 0
-    assert f"read as {READERS[renderer].title}" in capsys.readouterr().out
+    assert f"read as frames of {READERS[renderer].title}" in capsys.readouterr().out
     for number in NUMBERS:
         found, expected = (
             read_image(tmp_path / kind / f"frame.{number:04d}.exr").planes for kind in ("out", "expected")

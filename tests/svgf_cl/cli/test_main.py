@@ -27,6 +27,7 @@ def test_help_names_every_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert run("--help") == 0
     said = capsys.readouterr().out
     assert all(f"\n  {command} " in said for command in COMMANDS)
+    assert "..." not in said.split("Commands:")[1], "the first sentence of a command's docstring is too long for a line"
 
 
 @pytest.mark.parametrize(
@@ -36,6 +37,8 @@ def test_help_names_every_command(capsys: pytest.CaptureFixture[str]) -> None:
         ("'FRAMES'; try 'svgf-cl check --help'", ["check"]),
         ("'-o'", ["denoise", "frames"]),
         ("--bogus; try 'svgf-cl compare --help'", ["compare", "--bogus"]),
+        ("'--png' does not take a value; try 'svgf-cl denoise --help'", ["denoise", "a", "-o", "b", "--png=3"]),
+        ("got '0'; try 'svgf-cl compare --help'", ["compare", "--frames", "0"]),
     ],
 )
 def test_wrong_usage_is_one_line(words: str, argv: list[str], refused) -> None:

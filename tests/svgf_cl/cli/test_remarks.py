@@ -61,7 +61,7 @@ def line(folder: Path, names: list[str]) -> str:
 def test_one_line_says_what_is_read_and_what_that_costs(tmp_path: Path) -> None:
     text = line(tmp_path, PLAIN)
     assert text.startswith(
-        "read as svgf_cl, or a renderer with its channel names: "
+        "read as frames of svgf_cl, or of another renderer with its channel names: "
         "color (R G B), normal (normal.X Y Z), motion (motion.X Y), depth (depth.Z); missing: "
     )
     for field in ("albedo", "id", "emission", "motion.Z"):
@@ -90,7 +90,7 @@ def test_both_commands_say_it(tmp_path: Path, room: list[Frame], capsys: pytest.
     assert out.count("read as ") == 1
     assert not err
     assert run("check", folder) == 0
-    assert capsys.readouterr().out.startswith("read as svgf_cl")
+    assert capsys.readouterr().out.startswith("read as frames of svgf_cl")
 
 
 @pytest.mark.parametrize(("field", "other"), [("depth.Z", "Z"), ("normal.X", "N.X"), ("motion.X", "Vector.X")])

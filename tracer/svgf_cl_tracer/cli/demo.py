@@ -25,7 +25,7 @@ def demo(
         typer.Option(min=1, metavar="SPP", help="Samples per pixel of the references, which take most of the time."),
     ] = 256,
 ) -> None:
-    """Render the built-in scene, denoise it and print how much better it is.
+    """Render the built-in scene, denoise it and measure the gain.
 
     Renders a moving camera at 1 sample per pixel, denoises each frame at once, renders references of a few frames,
     and writes the sequences (EXR), still pictures side by side (PNG) and an animated preview (WebP).

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 def scenes(
     others: Annotated[
         list[str],
-        typer.Argument(metavar="[SCENE]...", help="Scene files and folders to show before the built-in ones."),
+        typer.Argument(metavar="SCENE", help="Scene files and folders to show before the built-in ones."),
     ] = [],  # noqa: B006  # never changed; typer wants the default spelled here
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="FILE", help="Write a contact sheet: .png or .webp.")
@@ -50,10 +50,11 @@ def scenes(
     ] = None,
     exposure: Exposure = 0.0,
 ) -> None:
-    """List the built-in scenes, why each is hard to denoise, and how many frames it has.
+    """List the built-in scenes, and why each is hard to denoise.
 
-    Shows thumbnails if the terminal has colours. With --output, draws all scenes on a contact sheet, each with
-    --size. Each picture shows the middle frame with its own exposure, to which --exposure is added.
+    The list also says how many frames each scene has. Shows thumbnails if the terminal has colours. With --output,
+    draws all scenes on a contact sheet, each with --size. Each picture shows the middle frame with its own exposure, to
+    which --exposure is added.
 
     \b
     Examples:
