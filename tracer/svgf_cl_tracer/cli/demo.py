@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterable, Mapping
+import shutil
+import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -51,17 +53,16 @@ def demo(
     run.write_preview()
     show_gain(*(run.measure(kind) for kind in ("noisy", "filtered", "denoised")))
     show_times(profiles)
-    show_files(
-        output,
-        ["preview.webp", *(f"still.{n:04d}.png" for n in run.compared), "noisy", "filtered", "denoised", "reference"],
-    )
+    show_files(output, [f"still.{number:04d}.png" for number in run.compared])
     print(f"to see it in motion: {shlex.join(viewing(output))}")
 
 
 def viewing(folder: Path) -> list[str]:
     """The command that plays the frames in a folder."""
     reference = str(folder / "reference")
-    return ["svgf-cl", "view", str(folder / "noisy"), "--reference", reference, "--set", "taa=on"]
+    called = Path(sys.argv[0])  # as `make` calls it, the command is not on the PATH
+    program = str(called) if called.name == "svgf-cl" and not shutil.which("svgf-cl") else "svgf-cl"
+    return [program, "view", str(folder / "noisy"), "--reference", reference, "--set", "taa=on"]
 
 
 def show_gain(noisy: Mapping[int, Metrics], svgf: Mapping[int, Metrics], antialiased: Mapping[int, Metrics]) -> None:
@@ -85,8 +86,18 @@ def show_gain(noisy: Mapping[int, Metrics], svgf: Mapping[int, Metrics], antiali
     show("against the reference", columns, rows)
 
 
-def show_files(folder: Path, names: Iterable[str]) -> None:
-    """Print where the results are; the files to look at first come first."""
+def show_files(folder: Path, stills: Sequence[str]) -> None:
+    """Print where the results are, and what they show; the files to look at first come first."""
+    meanings = {
+        "preview.webp": "all frames, noisy beside denoised",
+        **dict.fromkeys(stills, "noisy, denoised, reference; below, the part with the largest error, enlarged"),
+        "noisy": "EXR: 1 sample per pixel, and all that the filter reads",
+        "filtered": "EXR: the filter's pictures before antialiasing (filter)",
+        "denoised": "EXR: the same with antialiasing over time (+TAA)",
+        "reference": "EXR: the compared frames with many samples",
+    }
+    paths = {str(folder / name): meaning for name, meaning in meanings.items()}
+    width = max(map(len, paths))
     print("files:")
-    for name in names:
-        print(f"  {folder / name}")
+    for path, meaning in paths.items():
+        print(f"  {path:{width}}  {meaning}")
