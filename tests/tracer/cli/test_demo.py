@@ -18,7 +18,7 @@ from tests.command_line import run
 def test_demo_prints_gain_times_and_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("demo", "--frames", "2", "--size", "32x18", "--reference-spp", "4", "-o", tmp_path) == 0
     said = capsys.readouterr()
-    for words in ("device: ", "gain", "atrous 1", f"{tmp_path}/preview.webp"):
+    for words in ("device: ", "gain", "atrous 1", f"{tmp_path}/preview.webp", "all frames, noisy beside denoised"):
         assert words in said.out
     assert said.err == "", "no progress bar where stderr is no terminal"
     assert (tmp_path / "still.0001.png").exists()
@@ -37,6 +37,22 @@ def test_the_command_that_the_demo_ends_with_plays_its_frames(
     (clip,) = told
     assert (clip["name"], clip["numbers"], clip["has_references"]) == ("a folder/noisy", [0, 1], True)
     assert clip["settings"] == asdict(SETTINGS)
+
+
+@pytest.mark.parametrize(
+    ("called", "on_the_path", "program"),
+    [
+        (".venv/bin/svgf-cl", None, ".venv/bin/svgf-cl"),
+        ("/usr/bin/svgf-cl", "/usr/bin/svgf-cl", "svgf-cl"),
+        ("python", None, "svgf-cl"),
+    ],
+)
+def test_that_command_can_be_pasted_into_the_shell(
+    called: str, on_the_path: str | None, program: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "argv", [called, "demo"])
+    monkeypatch.setattr("shutil.which", lambda name: on_the_path)
+    assert viewing(Path("out"))[0] == program
 
 
 def test_a_demo_too_small_to_be_measured(tmp_path: Path, refused) -> None:
