@@ -208,7 +208,7 @@ MISTAKES = {
         shading.CURVE, "color", "encoded for a display", of("color", lambda given: np.power(given, 1 / 2.2))
     ),
     "color: a frame late": Mistake(
-        shading.CURVE, "color", "of the frame before", lambda before, now: {"color": before.frame.color}
+        shading.CURVE, "color", "of the previous frame", lambda before, now: {"color": before.frame.color}
     ),
     "color: NaN": Mistake(values.FINITE, "color", "NaN", of("color", not_a_number)),
     "id: renumbered": Mistake(surfaces.NAMES, "id", "the same object changes its id", renumbered),

@@ -24,7 +24,7 @@ def feed(*frames: Frame, kind: type[Filter] = Settings, **chosen: Any) -> tuple[
 def narrow_vectors() -> Iterator[None]:
     """Vectors of 4, which PoCL compiles in half the time: for tests of what is around the kernels.
 
-    tests/kernels, tests/hard and tests/fuzz test the kernels with the width that a device is given by default.
+    tests/kernels and tests/hard test the kernels with the width that a device is given by default.
     """
     with vector_width(4):
         yield

@@ -10,11 +10,13 @@ from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
 from svgf_cl import Denoiser, Eaw, SvgfError
+from svgf_cl.device.tuning import VECTOR_WIDTHS
 from svgf_cl.filters import FILTERS
 from svgf_cl.filters.filter import Filter
 from svgf_cl.frame import Shape
 from svgf_cl.settings import Choice, Domain, Range, Value, domains
 from tests.arrays import fetched
+from tests.denoising import vector_width
 from tests.frames import FULL, TINY
 from tests.fuzz import calls
 from tests.fuzz.effort import effort
@@ -75,7 +77,8 @@ def any_settings(of: type[Filter]) -> st.SearchStrategy[Filter]:
 @given(data=st.data(), shape=calls.shapes, wild=st.booleans(), seed=calls.seeds)
 def test_any_settings_give_a_picture(name: str, data: st.DataObject, shape: Shape, wild: bool, seed: int) -> None:
     chosen = data.draw(any_settings(FILTERS[name]))
-    den = Denoiser(shape, settings=chosen)
+    with vector_width(data.draw(st.sampled_from(VECTOR_WIDTHS))):
+        den = Denoiser(shape, settings=chosen)
     for turn in range(3):
         assert_is_a_picture(den.denoise(calls.frame_of(seed + turn, shape, FULL, 3, wild=wild)), shape)
 

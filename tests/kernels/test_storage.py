@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from svgf_cl import Denoiser, Frame, Settings
+from svgf_cl import Denoiser, Frame, Kalman, Settings
+from svgf_cl.filters.filter import Filter
 from svgf_cl.oracle.svgf import Oracle
-from tests.denoising import feed
-from tests.frames import SPLIT, bumpy_sequence, wall
+from tests.denoising import feed, vector_width
+from tests.frames import FULL, SPLIT, bumpy_sequence, wall
 
 GUIDES = {"half_guides": True}
 HISTORY = {"half_history": True}
@@ -57,3 +58,15 @@ def test_light_beyond_16_bits_is_held_at_their_greatest(choice: dict[str, Any]) 
 def test_dim_light_keeps_three_digits() -> None:
     out, _ = feed(wall(color=1e-3), **GUIDES, **HISTORY)
     assert_allclose(out, 1e-3, rtol=1e-3)
+
+
+@pytest.mark.parametrize("width", [4, 8])
+@pytest.mark.parametrize("kind", [Settings, Kalman])
+def test_taps_of_16_bits_need_no_alignment(kind: type[Filter], width: int) -> None:
+    """PoCL 3.1 crashed: it reads vectors of halves as if they were aligned, which a neighbour's is not."""
+    pictures = []
+    for each in (width, 16):
+        with vector_width(each):
+            pictures.append(feed(*bumpy_sequence(FULL, count=3), kind=kind, taa=True, **HISTORY)[0])
+    assert np.isfinite(pictures[0]).all()
+    assert np.quantile(np.abs(pictures[0] - pictures[1]), 0.99) < 1e-2 * pictures[1].mean()
