@@ -60,13 +60,12 @@ def test_dim_light_keeps_three_digits() -> None:
     assert_allclose(out, 1e-3, rtol=1e-3)
 
 
-@pytest.mark.parametrize("width", [4, 8])
 @pytest.mark.parametrize("kind", [Settings, Kalman])
-def test_taps_of_16_bits_need_no_alignment(kind: type[Filter], width: int) -> None:
+def test_taps_of_16_bits_need_no_alignment(kind: type[Filter]) -> None:
     """PoCL 3.1 crashed: it reads vectors of halves as if they were aligned, which a neighbour's is not."""
     pictures = []
-    for each in (width, 16):
-        with vector_width(each):
+    for width in (8, 1):
+        with vector_width(width):
             pictures.append(feed(*bumpy_sequence(FULL, count=3), kind=kind, taa=True, **HISTORY)[0])
     assert np.isfinite(pictures[0]).all()
     assert np.quantile(np.abs(pictures[0] - pictures[1]), 0.99) < 1e-2 * pictures[1].mean()
