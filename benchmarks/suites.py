@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+# worksteal: tests of one file stay together, because each process makes for itself what they share, such as a compiled
+# kernel or a rendered scene. `make test` has the same options.
+PARALLEL = ("-n", "auto", "--maxprocesses", "8", "--dist", "worksteal")
+
 # The same tests of kernels, on path-traced frames.
 TRACED = "tests/tracer/test_kernels_on_traced.py"
 # All tests that use a device; other tests have the same result everywhere.

@@ -57,7 +57,8 @@ def inputs() -> Iterator[Inputs]:
 def variants() -> list[Build]:
     """All builds that do not depend on a filter, and the builds of each filter for all combinations of fields.
 
-    Settings and tunings are chosen in turn for these builds: the product of all would take minutes, and find no more.
+    Settings and tunings of these builds are chosen at random, with a fixed seed: the product of all would take minutes,
+    and find no more.
     """
     draw = random.Random(0)
     return builds(

@@ -13,11 +13,8 @@ import tempfile
 from pathlib import Path
 
 from benchmarks.implementations import Environment, environments
-from benchmarks.suites import suite
+from benchmarks.suites import PARALLEL, suite
 
-# worksteal: tests of one file stay together, as what they share (a compiled kernel, a rendered scene) is made by each
-# process that needs it.
-PARALLEL = ("-n", "auto", "--maxprocesses", "8", "--dist", "worksteal")
 OPTIONS = (*PARALLEL, "--durations", "12", "--durations-min", "5")
 
 

@@ -10,14 +10,14 @@ from benchmarks.accuracy_page import BRIEF, HERE
 from benchmarks.gpu import child, findings
 from benchmarks.gpu.child import Ended
 from benchmarks.gpu.findings import Found
-from benchmarks.suites import KERNELS, ON_A_DEVICE
+from benchmarks.suites import KERNELS, ON_A_DEVICE, PARALLEL
 from svgf_cl.device.apart import summary
 
 LONGEST = 600  # seconds for the whole run
 
 # Tests that are not in KERNELS: hard inputs, sizes, thousands of frames.
 HARD = tuple(name for name in ON_A_DEVICE if name not in KERNELS)
-PYTEST = ("pytest", "-n", "auto", "--maxprocesses", "8", "-q", "-p", "no:cacheprovider")
+PYTEST = ("pytest", *PARALLEL, "-q", "-p", "no:cacheprovider")
 
 SVGF = r"svgf\.(demodulate|temporal|variance|atrous|modulate|frame|enqueue)"
 
