@@ -27,7 +27,7 @@ from svgf_cl.bench import error_to_oracle
 from svgf_cl.bench.tables import Table
 from svgf_cl.device import devices
 from svgf_cl.filters.filter import Filter
-from svgf_cl.io.atomic import written_whole
+from svgf_cl.io.atomic import write_text
 from svgf_cl.oracle.accuracy import DECISION, Deviation, deviations, worst
 from svgf_cl.oracle.rounding import SCALE_SHARE
 from svgf_cl_tracer import Shot, builtin_scene, render_sequence
@@ -190,8 +190,7 @@ def main() -> None:
     text = page(found)
     print(text)
     for target in map(Path, sys.argv[1:]):
-        with written_whole(target) as aside:
-            aside.write_text(text, encoding="utf-8")
+        write_text(target, text)
 
 
 if __name__ == "__main__":

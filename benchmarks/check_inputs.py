@@ -15,7 +15,7 @@ from svgf_cl import check_sequence
 from svgf_cl.check import CHECKS, Report
 from svgf_cl.cli.console import tracked
 from svgf_cl.frame import extent
-from svgf_cl.io.atomic import written_whole
+from svgf_cl.io.atomic import write_text
 from svgf_cl_tracer import BUILTIN
 
 TARGET = Path("docs/checking_inputs.md")
@@ -101,8 +101,7 @@ def check_inputs(
     names = [ROOM, *BUILTIN, *scenes]
     for scene in tracked(names, len(names), "checking"):
         columns[Path(scene).name] = outcomes(good_sequence(scene, SHAPE, FRAMES))
-    with written_whole(TARGET) as aside:
-        aside.write_text(f"{INTRODUCTION}\n{TABLE}\n{table(columns)}\n{checks()}", encoding="utf-8")
+    write_text(TARGET, f"{INTRODUCTION}\n{TABLE}\n{table(columns)}\n{checks()}")
     print(f"{TARGET}: {len(columns)} scenes")
 
 

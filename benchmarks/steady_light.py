@@ -8,6 +8,7 @@ import numpy as np
 import pyopencl as cl
 from numpy.typing import NDArray
 
+from benchmarks.markdown import markdown
 from svgf_cl import Denoiser, Frame, Settings
 from svgf_cl.frame import LUMINANCE
 from svgf_cl.oracle.svgf import Oracle
@@ -84,11 +85,9 @@ def errors(noise: float, queue: cl.CommandQueue | None = None) -> tuple[float, f
 
 def table(queue: cl.CommandQueue | None = None) -> str:
     """A markdown table with one row for each strength of noise."""
-    lines = ["| noise | before, float32 | after, float32 | after, 16 bits |", "|---|---|---|---|"]
-    for noise in NOISE:
-        lines.append(f"| {noise:g} | " + " | ".join(f"{error:.1e}" for error in errors(noise, queue)) + " |")
-    return "\n".join(lines)
+    rows = [[f"{noise:g}", *(f"{error:.1e}" for error in errors(noise, queue))] for noise in NOISE]
+    return markdown(("noise", "before, float32", "after, float32", "after, 16 bits"), rows)
 
 
 if __name__ == "__main__":
-    print(f"{INTRODUCTION}\n{table()}")
+    print(f"{INTRODUCTION}\n{table()}", end="")

@@ -12,7 +12,7 @@ from svgf_cl.filters.filter import Filter
 from svgf_cl.filters.pipeline import OUT, Access, Buffer, Life, Pass, Pipeline, Quantity, Resource, Use
 from svgf_cl.filters.signals import Inputs
 from svgf_cl.filters.taps import HERE, Taps
-from svgf_cl.io.atomic import written_whole
+from svgf_cl.io.atomic import write_text
 
 TARGET = Path("docs/algorithm.md")
 BEGIN = "<!-- From here on made by `make docs` (`python scripts/pass_table.py`); do not edit. -->"
@@ -126,9 +126,7 @@ def page(now: str) -> str:
 
 def main() -> None:
     """Write the page."""
-    made = page(TARGET.read_text())
-    with written_whole(TARGET) as aside:
-        aside.write_text(made)
+    write_text(TARGET, page(TARGET.read_text()))
     print(TARGET)
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from svgf_cl.io.atomic import written_whole
+from svgf_cl.io.atomic import write_text
 from svgf_cl_tracer.description import SceneDescription
 
 TARGET = Path("docs/scene_description.md")
@@ -98,8 +98,7 @@ def limits(field: dict[str, Any]) -> str:
 
 def main() -> None:
     """Write the page."""
-    with written_whole(TARGET) as aside:
-        aside.write_text(page())
+    write_text(TARGET, page())
     print(TARGET)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from svgf_cl.filters import DEFAULT, FILTERS
 from svgf_cl.filters.filter import Filter
-from svgf_cl.io.atomic import written_whole
+from svgf_cl.io.atomic import write_text
 from svgf_cl.settings import DOMAIN, REASON, UNIT
 
 TARGET = Path("docs/settings.md")
@@ -48,8 +48,7 @@ def settings_of(kind: type[Filter]) -> str:
 
 def main() -> None:
     """Write the page."""
-    with written_whole(TARGET) as aside:
-        aside.write_text(page())
+    write_text(TARGET, page())
     print(TARGET)
 
 

@@ -19,7 +19,7 @@ from svgf_cl.bench import plots, scaling
 from svgf_cl.bench.compare import comparison, differences
 from svgf_cl.bench.results import Run
 from svgf_cl.bench.tables import Table, benchmark_table, device_table, memory_table
-from svgf_cl.io.atomic import written_whole
+from svgf_cl.io.atomic import write_text, written_whole
 
 # Placeholder for the page's own text colour, so that plots are legible on dark and light backgrounds.
 INK = "#010203"
@@ -73,9 +73,7 @@ def write(
     first, more : sequence of Section
         Sections to show before and after the run's own ones.
     """
-    page = render(run, [*first, *sections(run, old), *more])
-    with written_whole(folder / "report.html") as aside:
-        aside.write_text(page, encoding="utf-8")
+    write_text(folder / "report.html", render(run, [*first, *sections(run, old), *more]))
     with written_whole(folder / "summary.png") as aside:
         plots.summary(run).savefig(aside, format="png", dpi=100)
 
