@@ -74,6 +74,7 @@ def run(
             stdout=output,
             stderr=errors,
             start_new_session=True,  # so that its children can be ended with it
+            preexec_fn=listen,
         )
         try:
             while process.poll() is None and time.monotonic() - begin < seconds:
@@ -84,6 +85,11 @@ def run(
             end(process)
     said = [log.read_text(errors="replace") for log in logs]
     return Ended(code, time.monotonic() - begin, *said)
+
+
+def listen() -> None:
+    """Let SIGINT interrupt this process even if its parent ignores it, as a shell's background job does."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def end(process: subprocess.Popen[bytes]) -> None:

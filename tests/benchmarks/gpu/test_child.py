@@ -61,6 +61,16 @@ def test_at_its_limit_it_may_write_what_it_knows(run, monkeypatch: pytest.Monkey
     assert ended.output == "begun\nkept\n"
 
 
+def test_it_listens_even_if_this_process_ignores_interrupts(run, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As does all that a shell runs in the background of a script."""
+    monkeypatch.setattr(child, "GRACE", 60.0)
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        assert run(KEPT, seconds=1.0).output == "begun\nkept\n"
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
 def test_one_that_does_not_listen_is_killed_with_what_it_has_started(run, tmp_path: Path) -> None:
     pids = tmp_path / "pids"
     ended = run(f"PIDS = {str(pids)!r}{PARENT}{HANG}", seconds=2.0)
