@@ -22,11 +22,10 @@ from svgf_cl.settings import domains
 
 pytestmark = pytest.mark.filterwarnings("ignore::pyopencl.CompilerWarning")  # Intel's reports success
 
-# All that changes a signature; how many components motion has does not.
-INPUTS = [
-    Inputs(signals=split, albedo=albedo, emission=emission, id=id_)
-    for split, albedo, emission, id_ in itertools.product(SPLITS, *[(False, True)] * 3)
-]
+# Each field of a frame has arguments of its own: none of the fields, each alone, and all.
+OPTIONAL = ("albedo", "emission", "id")
+CHOICES = (*[{name: True} for name in OPTIONAL], {}, dict.fromkeys(OPTIONAL, True))
+INPUTS = [Inputs(signals=split, **fields) for split, fields in itertools.product(SPLITS, CHOICES)]
 
 
 def pipeline_of(name: str, inputs: Inputs, *, taa: bool) -> Pipeline:

@@ -13,16 +13,10 @@ from numpy.testing import assert_allclose
 from svgf_cl import Denoiser, Settings
 from tests.denoising import feed
 from tests.frames import SHAPE, noise, wall
-from tests.oracle import assert_follows_oracle, every_case
 
 SPLINES = {"5x5": np.array((1 / 16, 1 / 4, 3 / 8, 1 / 4, 1 / 16)), "3x3": np.array((1 / 4, 1 / 2, 1 / 4))}
 LEFT = np.arange(SHAPE[1]) < 17
 LEVELS = range(1, 6)
-
-
-@every_case
-def test_follows_the_oracle(case: str) -> None:
-    assert_follows_oracle(case, "level", "level_variance")
 
 
 def everywhere(left: Any, right: Any) -> np.ndarray:

@@ -12,14 +12,8 @@ from svgf_cl import Frame
 from svgf_cl.device.layout import HALO, Layout
 from tests.denoising import feed
 from tests.frames import FULL, SHAPE, SPLIT, noise, only, wall
-from tests.oracle import assert_follows_oracle, every_case
 
 HUGE = np.finfo(np.float32).max
-
-
-@every_case
-def test_follows_the_oracle(case: str) -> None:
-    assert_follows_oracle(case, "normal", "depth", "demodulated", "modulated")
 
 
 def full_wall(**given: Any) -> Frame:

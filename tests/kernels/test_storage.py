@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from svgf_cl import Denoiser, Frame, Kalman, Settings
+from svgf_cl import Denoiser, Kalman, Settings
 from svgf_cl.filters.filter import Filter
-from svgf_cl.oracle.svgf import Oracle
 from tests.denoising import feed, vector_width
 from tests.frames import FULL, SPLIT, bumpy_sequence, wall
+from tests.oracle import error_to_oracle
 
+BUMPY = partial(bumpy_sequence, SPLIT)
 GUIDES = {"half_guides": True}
 HISTORY = {"half_history": True}
 FAST = {"precision": "fast"}
@@ -33,17 +34,7 @@ BOUNDS = [
 
 @pytest.mark.parametrize(("choice", "bound"), BOUNDS, ids=[" ".join(choice) or "precise" for choice, _ in BOUNDS])
 def test_error_to_the_oracle(choice: dict[str, Any], bound: float) -> None:
-    assert error_to_the_oracle(bumpy_sequence(SPLIT), choice) <= bound
-
-
-def error_to_the_oracle(sequence: Sequence[Frame], choice: dict[str, Any]) -> float:
-    """Root-mean-square error of a sequence with these settings, relative to each picture's mean."""
-    den, oracle = Denoiser(sequence[0].shape, settings=Settings(**choice)), Oracle(sequence[0].shape, Settings())
-    squares = []
-    for frame in sequence:
-        expected = oracle.denoise(frame)
-        squares.append(np.mean(np.square(den.denoise(frame) - expected)) / np.square(expected.mean()))
-    return float(np.sqrt(np.mean(squares)))
+    assert error_to_oracle(BUMPY, Settings(), **choice) <= bound
 
 
 @pytest.mark.parametrize("choice", [HISTORY, GUIDES | HISTORY])

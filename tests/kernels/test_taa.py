@@ -11,14 +11,8 @@ from numpy.testing import assert_allclose
 from svgf_cl import Denoiser, Frame, Settings
 from tests.denoising import feed
 from tests.frames import SHAPE, SPLIT, noise, only, wall
-from tests.oracle import antialiased_cases, assert_follows_oracle
 
 LUMA = np.array((0.25, 0.5, 0.25))
-
-
-@antialiased_cases
-def test_follows_the_oracle(case: str) -> None:
-    assert_follows_oracle(case, "antialiased", "resolved")
 
 
 def glowing(picture: Any, **given: Any) -> Frame:

@@ -9,14 +9,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.denoising import feed
 from tests.frames import noise, wall
-from tests.oracle import assert_follows_oracle, every_case
 
 LUMINANCE = np.array((0.2126, 0.7152, 0.0722))
-
-
-@every_case
-def test_follows_the_oracle(case: str) -> None:
-    assert_follows_oracle(case, "variance")
 
 
 def test_constant_image_has_none() -> None:
