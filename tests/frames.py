@@ -11,7 +11,7 @@ from svgf_cl.device import devices
 from svgf_cl.frame import CHANNELS, Frame, Shape
 
 # Primes: no multiple of any vector width. Fewer on a simulator, which takes a millisecond for every pixel.
-SHAPE = (11, 23) if os.environ.get(devices.VARIABLE) == devices.SIMULATOR else (53, 37)
+SHAPE = (7, 21) if os.environ.get(devices.VARIABLE) == devices.SIMULATOR else (53, 37)
 TINY = (7, 9)
 FACING = (0.0, 0.0, 1.0)
 
