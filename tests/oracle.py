@@ -110,9 +110,9 @@ CASES = {
     "split": Case(partial(bumpy_sequence, SPLIT)),
     "split, unusual settings": Case(partial(bumpy_sequence, SPLIT), UNUSUAL),
     "albedo alone": Case(partial(bumpy_sequence, ("color", "albedo")), width=1),
-    "emission alone": Case(partial(bumpy_sequence, ("color", "emission"), motion=2), Settings(sigma_normal=16), 4),
+    "emission alone": Case(partial(bumpy_sequence, ("color", "emission"), motion=2), Settings(sigma_normal=16), 8),
     "ids alone": Case(partial(bumpy_sequence, ("color", "id"), motion=2), Settings(sigma_normal=32), 1, "exp2"),
-    "plain split": Case(partial(bumpy_sequence, SPLIT[:2], motion=2), Settings(taa=True, taps="5x5"), 8, "exp2"),
+    "plain split": Case(partial(bumpy_sequence, SPLIT[:2], motion=2), Settings(taa=True, taps="5x5"), 4, "exp2"),
 }
 
 # Tolerant enough of differences in light that even the last levels find something to average.
@@ -154,10 +154,10 @@ UNUSUAL_KALMAN = Kalman(
     pixel_filter=0.15,
 )
 KALMAN_CASES = {
-    "Kalman, plain": Case(partial(changing_sequence, PLAIN), Kalman()),
+    "Kalman, plain": Case(partial(changing_sequence, PLAIN), Kalman(), 8),
     "Kalman, full": Case(partial(changing_sequence, FULL), Kalman(taps="5x5", standard_error=True)),
     "Kalman, split, unusual settings": Case(partial(changing_sequence, SPLIT), UNUSUAL_KALMAN),
-    "Kalman, split": Case(partial(changing_sequence, SPLIT), Kalman(), 8),
+    "Kalman, split": Case(partial(changing_sequence, SPLIT), Kalman()),
     "Kalman, albedo alone": Case(partial(changing_sequence, ("color", "albedo"), motion=2), Kalman(), 1, "exp2"),
     "Kalman, ids alone": Case(partial(changing_sequence, ("color", "id"), motion=2), Kalman(taa=True), 4),
 }

@@ -85,7 +85,7 @@ def dry(folder: Path) -> list[Step]:
         tests(
             "kernels",
             "some kernels against the oracle",
-            ("tests/kernels/test_kalman.py", "tests/kernels/test_modulate.py", "-k", "plain]"),
+            ("tests/kernels/test_oracle.py", "-k", "plain]"),
             folder,
             120,
         ),
