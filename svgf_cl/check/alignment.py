@@ -68,7 +68,8 @@ def correlations(first: dict[str, Array], second: dict[str, Array]) -> Array:
 
 def covariances(a: Array, b: Array) -> Array:
     """Return the covariance of each row of `a` (M, n) with each of `b` (N, n), times n: (M, N)."""
-    return a @ b.T - np.outer(a.sum(axis=1), b.mean(axis=1))
+    together: Array = a @ b.T - np.outer(a.sum(axis=1), b.mean(axis=1))
+    return together
 
 
 def mirrored(view: View) -> Array:

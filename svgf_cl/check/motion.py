@@ -142,26 +142,29 @@ def difference(here: Array, past: Array, x: Array, y: Array, tile: Whole) -> flo
     here, x, y, tile = here[inside], x[inside], y[inside], tile[inside]
     offset = np.zeros((2, tile.max() + 1))
     for _ in range(TURNS):
-        there, *slope = bilinear(past, x + offset[0, tile], y + offset[1, tile])
+        there, along_x, along_y = bilinear(past, x + offset[0, tile], y + offset[1, tile])
         off = here - there
         trust = 1 / (1 + (off / 0.1) ** 2)  # pixels that were hidden hardly count
-        trusted = [trust * along for along in slope]
-        xx, yy, xy, xo, yo = (
-            np.bincount(tile, np.einsum("nc,nc->n", *pair))
-            for pair in [*zip(trusted, slope, strict=True), (trusted[0], slope[1]), *((t, off) for t in trusted)]
-        )
-        xx, yy = xx + 1e-3, yy + 1e-3
-        step = np.stack([yy * xo - xy * yo, xx * yo - xy * xo]) / (xx * yy - xy**2)  # Cramer's rule
+        a, b = trust * along_x, trust * along_y
+        xx, xy, yy = 1e-3 + dots(tile, a, along_x), dots(tile, a, along_y), 1e-3 + dots(tile, b, along_y)
+        right_x, right_y = dots(tile, a, off), dots(tile, b, off)
+        step = np.stack([yy * right_x - xy * right_y, xx * right_y - xy * right_x]) / (xx * yy - xy**2)
         offset = np.clip(offset + step, -REACH, REACH)
     there, *_ = bilinear(past, x + offset[0, tile], y + offset[1, tile])
     return float(np.abs(here - there).sum() / len(here))
+
+
+def dots(tile: Whole, a: Array, b: Array) -> Array:
+    """Return the sum of a b (N, C) over each tile's pixels."""
+    total: Array = np.bincount(tile, np.einsum("nc,nc->n", a, b))
+    return total
 
 
 def bilinear(values: Array, x: Array, y: Array) -> tuple[Array, Array, Array]:
     """Return values (h, w, C) between pixels, and their change from pixel to pixel along x and along y: each (N, C)."""
     height, width = values.shape[:2]
     left, top = (np.clip(np.floor(p), 0, max(size - 2, 0)).astype(int) for p, size in ((x, width), (y, height)))
-    fx, fy = (np.clip(p - place, 0, 1)[:, None] for p, place in ((x, left), (y, top)))
+    fx, fy = (np.clip(p - start, 0, 1)[:, None] for p, start in ((x, left), (y, top)))
     right, below = int(width > 1), width * (height > 1)  # steps between pixels of the flattened image
     flat, place = values.reshape(height * width, -1), top * width + left
     a, b, c, d = (flat.take(place + step, axis=0) for step in (0, right, below, below + right))
