@@ -146,7 +146,7 @@ def difference(here: Array, past: Array, x: Array, y: Array, tile: Whole) -> flo
         off = here - there
         trust = 1 / (1 + (off / 0.1) ** 2)  # pixels that were hidden hardly count
         a, b = trust * along_x, trust * along_y
-        xx, xy, yy = 1e-3 + dots(tile, a, along_x), dots(tile, a, along_y), 1e-3 + dots(tile, b, along_y)
+        xx, xy, yy = dots(tile, a, along_x) + 1e-3, dots(tile, a, along_y), dots(tile, b, along_y) + 1e-3
         right_x, right_y = dots(tile, a, off), dots(tile, b, off)
         step = np.stack([yy * right_x - xy * right_y, xx * right_y - xy * right_x]) / (xx * yy - xy**2)
         offset = np.clip(offset + step, -REACH, REACH)
@@ -156,7 +156,7 @@ def difference(here: Array, past: Array, x: Array, y: Array, tile: Whole) -> flo
 
 def dots(tile: Whole, a: Array, b: Array) -> Array:
     """Return the sum of a b (N, C) over each tile's pixels."""
-    total: Array = np.bincount(tile, np.einsum("nc,nc->n", a, b))
+    total: Array = np.bincount(tile, np.einsum("nc,nc->n", a, b)).astype(np.float64)
     return total
 
 
