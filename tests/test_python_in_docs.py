@@ -1,7 +1,8 @@
-"""Every block of Python in the pages runs, given what its page speaks of. README has a test of its own."""
+"""Every block of Python in the pages runs, given what its page speaks of; that of README is given nothing."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +12,13 @@ import pytest
 import svgf_cl_tracer.api  # noqa: F401  # before the fixtures move the cache, which has its loops compiled
 from svgf_cl.filters import signals
 from svgf_cl.io.synthetic import room_frames
+from tests.denoising import narrow_vectors  # noqa: F401
 from tests.pages import PAGES, ROOT, blocks, name_of
 from tests.renderers import moments, own, written
 
 HEIGHT, WIDTH = 36, 64
 # What makes a block cheap: a smaller picture.
-SMALLER = {"(180, 320)": "(18, 32)", "ahead=8, cuts=[120, 310]": "ahead=1, cuts=[2]"}
+SMALLER = {"(180, 320)": "(18, 32)", "360, 640": "36, 64", "ahead=8, cuts=[120, 310]": "ahead=1, cuts=[2]"}
 
 
 def given() -> dict[str, Any]:
@@ -31,6 +33,12 @@ def given() -> dict[str, Any]:
     return {"height": HEIGHT, "width": WIDTH, "frames": frames} | cameras | lens | one | declarations
 
 
+def smaller(block: str) -> str:
+    for large, small in SMALLER.items():
+        block = block.replace(large, small)
+    return block
+
+
 EXAMPLES = [
     pytest.param(block, id=f"{name_of(page)}-{number}")
     for page in PAGES
@@ -43,6 +51,11 @@ EXAMPLES = [
 def test_blocks_of_python_run(block: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     written(tmp_path / "shot", {at.number: own(at) for at in moments()}, stem="")
-    for large, small in SMALLER.items():
-        block = block.replace(large, small)
-    exec(block, given())
+    exec(smaller(block), given())
+
+
+def test_the_example_of_readme_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    (example,) = blocks((ROOT / "README.md").read_text(), "python")
+    exec(smaller(example), {})
+    before, after = map(float, re.match(r"([\d.]+) -> ([\d.]+) \{", capsys.readouterr().out).groups())
+    assert after < before

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from svgf_cl.check.check import Check
 from svgf_cl.check.finding import Finding, Unknown
-from svgf_cl.check.view import Array, View, over_channels, shifted
+from svgf_cl.check.view import Array, View, beside, over_channels
 
 FIELDS = ("depth", "normal", "albedo", "id", "motion")
 # Least second differences between neighbours at an edge: relative ones of one over depth, and of motion compared with
@@ -37,7 +37,7 @@ def edges(view: View) -> dict[str, Array]:
     if view.albedo is not None:
         found["albedo"] = bend(view.albedo) > ALBEDO
     if view.id is not None:
-        found["id"] = (view.id != shifted(view.id, 1, 0)) | (view.id != shifted(view.id, 0, 1))
+        found["id"] = np.logical_or(*(view.id != beside(view.id, axis)[1] for axis in (0, 1)))
     fastest = float(np.percentile(np.abs(view.motion), 99))
     if fastest > MOVING:
         found["motion"] = bend(view.motion) > MOTION * fastest
@@ -46,8 +46,8 @@ def edges(view: View) -> dict[str, Array]:
 
 def bend(values: Array) -> Array:
     """Return the largest second difference at each pixel (h, w) of (h, w, ...), over both axes and all channels."""
-    both = [shifted(values, dx, dy) + shifted(values, -dx, -dy) - 2 * values for dx, dy in ((1, 0), (0, 1))]
-    return over_channels(np.maximum, np.atleast_3d(np.maximum(*map(np.abs, both))))
+    both = [np.abs(np.add(*beside(values, axis)) - 2 * values) for axis in (0, 1)]
+    return over_channels(np.maximum, np.atleast_3d(np.maximum(*both)))
 
 
 def correlations(first: dict[str, Array], second: dict[str, Array]) -> Array:
@@ -56,11 +56,20 @@ def correlations(first: dict[str, Array], second: dict[str, Array]) -> Array:
     It is 0 where there are no edges.
     """
     found = np.zeros(len(FIELDS))
-    for index, name in enumerate(FIELDS):
-        others = [values for other, values in second.items() if other != name]
-        if name in first and others:
-            found[index] = np.nan_to_num(np.corrcoef(first[name].ravel(), np.mean(others, axis=0).ravel())[0, 1])
+    if first and second:
+        a, b = (np.stack([edge.ravel() for edge in fields.values()]) for fields in (first, second))
+        own, both, within = (covariances(*pair) for pair in ((a, a), (a, b), (b, b)))
+        for row, name in enumerate(first):
+            others = np.array([other != name for other in second])
+            spread = np.sqrt(own[row, row] * within[np.ix_(others, others)].sum())
+            found[FIELDS.index(name)] = np.nan_to_num(both[row, others].sum() / spread)
     return found
+
+
+def covariances(a: Array, b: Array) -> Array:
+    """Return the covariance of each row of `a` (M, n) with each of `b` (N, n), times n: (M, N)."""
+    together: Array = a @ b.T - np.outer(a.sum(axis=1), b.mean(axis=1))
+    return together
 
 
 def mirrored(view: View) -> Array:

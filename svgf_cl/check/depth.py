@@ -11,7 +11,7 @@ import numpy as np
 
 from svgf_cl.check.check import Check
 from svgf_cl.check.finding import Finding, Unknown
-from svgf_cl.check.view import Array, View, Whole, pixel_centers, sample
+from svgf_cl.check.view import Array, View, Whole, over_channels, pixel_centers, sample
 
 SAMPLES = 10000  # pixels that may lie on planes
 REACH = 1 / 30  # of the image's height, from the middle pixel to both others
@@ -41,26 +41,28 @@ def votes(view: View) -> Array | None:
     pixels = triples(view)
     if len(pixels) < ENOUGH:
         return None
-    depth, x, y = (values.ravel()[pixels] for values in (view.depth, *pixel_centers(view.shape)))
-    given = error(1 / depth, depth)
+    depth, x, y = (values.ravel()[pixels.T] for values in (view.depth, *pixel_centers(view.shape)))
+    middle = depth[1]
+    nearness = 1 / depth
+    given = error(nearness, middle)
     offset = origin(depth)
     beyond = np.where(depth == offset, np.nan, depth - offset)
-    moved = np.nan_to_num(error(1 / beyond, beyond**2 / depth), nan=np.inf)
+    moved = np.nan_to_num(error(1 / beyond, beyond[1] ** 2 / middle), nan=np.inf)
     oblique = np.sqrt(1 + (x**2 + y**2) / (FOCAL_LENGTHS[:, None, None] * view.shape[0]) ** 2)
-    neither = np.full(len(depth), np.inf)
+    neither = np.full(len(pixels), np.inf)
     errors = np.stack(
         [
-            error(depth, 1 / depth),
+            error(depth, 1 / middle),
             moved if offset < 0 else neither,
             moved if offset > 0 else neither,
-            *(error(o / depth, depth / o) for o in oblique),
+            *(error(o * nearness, middle / o[1]) for o in oblique),
             neither,
         ]
     )
     wins = (errors <= errors.min(axis=0)) & (errors < CLEARLY * given)
     losses = given < CLEARLY * errors
     tilted = np.linalg.norm(view.normal.reshape(-1, 3)[pixels[:, 1]].mean(axis=0)) < ONE_WAY
-    wins[-1] = (np.ptp(depth, axis=1) < FLAT * depth[:, 1]) & (depth.max() <= 1) & tilted
+    wins[-1] = (np.ptp(depth, axis=0) < FLAT * middle) & (depth.max() <= 1) & tilted
     losses[-1] = ~wins[-1]
     return np.array([wins.sum(axis=1), losses.sum(axis=1)], np.float64)
 
@@ -73,27 +75,27 @@ def triples(view: View) -> Whole:
         middle = np.zeros(view.shape, np.bool_)
         middle[dy : height - dy, dx : width - dx] = True
         pixels = sample(middle & view.hit, SAMPLES)[:, None] + np.array([-1, 0, 1]) * (dy * width + dx)
-        normal, hit = view.normal.reshape(-1, 3)[pixels], view.hit.ravel()[pixels].all(axis=-1)
-        found.append(pixels[hit & (np.ptp(normal, axis=1).max(axis=-1) < SAME)])
+        normal, hit = view.normal.reshape(-1, 3)[pixels.T], view.hit.ravel()[pixels.T].all(axis=0)
+        found.append(pixels[hit & (over_channels(np.maximum, np.ptp(normal, axis=0)) < SAME)])
     return np.concatenate(found)
 
 
 def error(values: Array, sensitivity: Array) -> Array:
-    """Return how far the middle of three values (n, 3) is from the mean of both ends: (n), as relative depth.
+    """Return how far the middle of three values (3, n) is from the mean of both ends: (n), as relative depth.
 
-    The values are functions of depth. `sensitivity` is the relative change of depth if a value changes by 1.
+    The values are functions of depth. `sensitivity` (n) is the relative change of depth if the middle one changes by 1.
     """
-    bend = values[:, 0] + values[:, 2] - 2 * values[:, 1]
-    off: Array = np.maximum(np.abs(bend * sensitivity[:, 1]), PRECISION)
+    bend = values[0] + values[2] - 2 * values[1]
+    off: Array = np.maximum(np.abs(bend * sensitivity), PRECISION)
     return off
 
 
 def origin(depth: Array) -> float:
-    """Return the c for which 1 / (depth - c) is affine in most triples (n, 3); 0 if depth itself is the distance.
+    """Return the c for which 1 / (depth - c) is affine in most triples (3, n); 0 if depth itself is the distance.
 
     1 / (value - c) is affine in a, b, d if c (a + d - 2 b) = 2 a d - b (a + d).
     """
-    a, b, d = depth.T
+    a, b, d = depth
     curved, product = a + d - 2 * b, 2 * a * d - b * (a + d)
     told = np.abs(curved) > 10 * PRECISION * b
     found = float(np.median(product[told] / curved[told])) if told.any() else 0.0

@@ -15,7 +15,7 @@ import numpy as np
 
 from svgf_cl.check.check import Check
 from svgf_cl.check.finding import Finding, Unknown
-from svgf_cl.check.view import Array, View, Whole, over_channels, sample, shifted
+from svgf_cl.check.view import Array, View, Whole, beside, over_channels, sample
 from svgf_cl.frame import Shape
 
 SAMPLES = 1500
@@ -93,7 +93,7 @@ def misfits(before: View, now: View) -> Array | None:
     if len(pixels) < ENOUGH:
         return None
     y, x = np.divmod(pixels, now.shape[1])
-    lasting, past = (features(view) for view in (now, before))
+    past, lasting = (features(view) for view in (before, now))
     here, motion = lasting.reshape(-1, lasting.shape[-1])[pixels], now.motion.reshape(-1, 2)[pixels]
     found = []
     for mistake in (AS_GIVEN, *MISTAKES):
@@ -101,8 +101,8 @@ def misfits(before: View, now: View) -> Array | None:
         found.append(difference(here, past, x + dx, y + dy, np.zeros_like(x)))
     tile = TILES * (y * TILES // now.shape[0]) + x * TILES // now.shape[1]
     found.append(found[0] if now.is_small else difference(here, past, x + motion[:, 0], y + motion[:, 1], tile))
-    gradient = bilinear(lasting, x.astype(float), y.astype(float))[1]
-    return np.array([fastest > 0, np.hypot(*gradient.T).sum(axis=0).mean(), between_any(here), *found])
+    slope = bilinear(lasting, x.astype(float), y.astype(float))[1:]
+    return np.array([fastest > 0, np.hypot(*slope).sum(axis=-1).mean(), between_any(here), *found])
 
 
 @lru_cache(maxsize=2)  # for a frame and the previous one
@@ -118,8 +118,9 @@ def features(view: View) -> Array:
 
 def blurred(values: Array) -> Array:
     """Return weighted means over 3 x 3 pixels of (h, w, ...)."""
-    for dx, dy in ((1, 0), (0, 1)):
-        values = 0.25 * (shifted(values, -dx, -dy) + 2 * values + shifted(values, dx, dy))
+    for axis in (1, 0):
+        before, behind = beside(values, axis)
+        values = 0.25 * (before + 2 * values + behind)
     return values
 
 
@@ -139,27 +140,38 @@ def difference(here: Array, past: Array, x: Array, y: Array, tile: Whole) -> flo
     if inside.mean() < SEEN:
         return between_any(here)
     here, x, y, tile = here[inside], x[inside], y[inside], tile[inside]
-    offset = np.zeros((tile.max() + 1, 2))
+    offset = np.zeros((2, tile.max() + 1))
     for _ in range(TURNS):
-        there, slope = bilinear(past, x + offset[tile, 0], y + offset[tile, 1])
+        there, along_x, along_y = bilinear(past, x + offset[0, tile], y + offset[1, tile])
         off = here - there
         trust = 1 / (1 + (off / 0.1) ** 2)  # pixels that were hidden hardly count
-        system, right = np.full((len(offset), 2, 2), 1e-3) * np.eye(2), np.zeros_like(offset)
-        np.add.at(system, tile, np.einsum("nci,nc,ncj->nij", slope, trust, slope))
-        np.add.at(right, tile, np.einsum("nci,nc,nc->ni", slope, trust, off))
-        offset = np.clip(offset + np.linalg.solve(system, right[..., None])[..., 0], -REACH, REACH)
-    there, _ = bilinear(past, x + offset[tile, 0], y + offset[tile, 1])
-    return float(np.abs(here - there).sum(axis=-1).mean())
+        a, b = trust * along_x, trust * along_y
+        xx, xy, yy = dots(tile, a, along_x) + 1e-3, dots(tile, a, along_y), dots(tile, b, along_y) + 1e-3
+        right_x, right_y = dots(tile, a, off), dots(tile, b, off)
+        step = np.stack([yy * right_x - xy * right_y, xx * right_y - xy * right_x]) / (xx * yy - xy**2)
+        offset = np.clip(offset + step, -REACH, REACH)
+    there, *_ = bilinear(past, x + offset[0, tile], y + offset[1, tile])
+    return float(np.abs(here - there).sum() / len(here))
 
 
-def bilinear(values: Array, x: Array, y: Array) -> tuple[Array, Array]:
-    """Return values (h, w, C) between pixels, (N, C), and their gradient, (N, C, 2)."""
+def dots(tile: Whole, a: Array, b: Array) -> Array:
+    """Return the sum of a b (N, C) over each tile's pixels."""
+    total: Array = np.bincount(tile, np.einsum("nc,nc->n", a, b)).astype(np.float64)
+    return total
+
+
+def bilinear(values: Array, x: Array, y: Array) -> tuple[Array, Array, Array]:
+    """Return values (h, w, C) between pixels, and their change from pixel to pixel along x and along y: each (N, C)."""
     height, width = values.shape[:2]
-    left, top = (np.clip(np.floor(p), 0, size - 2).astype(int) for p, size in ((x, width), (y, height)))
-    fx, fy = (np.clip(x - left, 0, 1)[:, None], np.clip(y - top, 0, 1)[:, None])
-    a, b, c, d = values[top, left], values[top, left + 1], values[top + 1, left], values[top + 1, left + 1]
-    mean = (a * (1 - fx) + b * fx) * (1 - fy) + (c * (1 - fx) + d * fx) * fy
-    return mean, np.stack([(b - a) * (1 - fy) + (d - c) * fy, (c - a) * (1 - fx) + (d - b) * fx], axis=-1)
+    left, top = (np.clip(np.floor(p), 0, max(size - 2, 0)).astype(int) for p, size in ((x, width), (y, height)))
+    fx, fy = (np.clip(p - start, 0, 1)[:, None] for p, start in ((x, left), (y, top)))
+    right, below = int(width > 1), width * (height > 1)  # steps between pixels of the flattened image
+    flat, place = values.reshape(height * width, -1), top * width + left
+    a, b, c, d = (flat.take(place + step, axis=0) for step in (0, right, below, below + right))
+    across = b - a
+    twist = d - c - across
+    down = c - a + twist * fx
+    return a + across * fx + down * fy, across + twist * fy, down
 
 
 def judge(sums: Array) -> list[Finding | Unknown]:

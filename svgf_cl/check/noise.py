@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from svgf_cl.check.view import length, over_channels
 from svgf_cl.frame import Frame
 
 Array = npt.NDArray[np.float32]
@@ -20,13 +21,13 @@ HOLES = 0.02  # share of pixels that hit nothing between two that did, because t
 
 def has_noisy_depth(frame: Frame) -> bool:
     """Whether the depth of a frame is noisy."""
-    hit = np.any(frame.normal, axis=-1) & (frame.depth > 0.0) & np.isfinite(frame.depth)
+    hit = over_channels(np.logical_or, frame.normal != 0) & (frame.depth > 0.0) & np.isfinite(frame.depth)
     left, middle, right = (np.s_[:, place : frame.shape[1] - 2 + place] for place in range(3))
     if (hit[left] & ~hit[middle] & hit[right]).sum() > HOLES * hit.size:
         return True
     with np.errstate(invalid="ignore"):  # an infinite normal belongs to no plane
-        unit = frame.normal / np.maximum(np.linalg.norm(frame.normal, axis=-1, keepdims=True), LEAST_LENGTH)
-    is_flat = [np.sum(unit[side] * unit[middle], axis=-1) > PLANE for side in (left, right)]
+        unit = frame.normal / np.maximum(length(frame.normal), LEAST_LENGTH)[..., None]
+    is_flat = [np.einsum("...c,...c->...", unit[side], unit[middle]) > PLANE for side in (left, right)]
     plane = hit[left] & hit[middle] & hit[right] & is_flat[0] & is_flat[1]
     nearness = 1.0 / np.where(hit, frame.depth, 1.0).astype(np.float64)
     bend = np.abs(nearness[left] - 2.0 * nearness[middle] + nearness[right])[plane] / nearness[middle][plane]

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -91,9 +92,9 @@ def imbalances(before: View, now: View) -> Array | None:
     if now.albedo is None or before.albedo is None:
         return None
     pairs = {
-        "as given": neighbors(now, now.color),
-        "late": neighbors(before, now.color),
-        "flipped": neighbors(now, now.color[::-1]),
+        "late": lit(before, now.color),  # first, as the cache has the previous frame still
+        "as given": lit(now, now.color),
+        "flipped": lit(now, now.color[::-1]),
     }
     found = []
     for mistake in (AS_GIVEN, *MISTAKES):
@@ -105,8 +106,20 @@ def imbalances(before: View, now: View) -> Array | None:
     return np.array(found)
 
 
-def neighbors(view: View, color: Array) -> tuple[Array, Array, Whole]:
-    """Return colour and albedo (2, n) of neighbours with one normal, the greater albedo first, and each pair's cell."""
+def lit(view: View, color: Array) -> tuple[Array, Array, Whole]:
+    """Return colour and albedo (2, n) of neighbours of which one is lit, and each pair's cell (n)."""
+    place, albedo, cell = neighbors(view)
+    light = color.ravel()[place]
+    told = light.max(axis=0) > 0
+    return light[:, told], albedo[:, told], cell[told]
+
+
+@lru_cache(maxsize=2)  # for a frame and the previous one
+def neighbors(view: View) -> tuple[Whole, Array, Whole]:
+    """Return neighbours with one normal, the greater albedo first: places and albedo (2, n), and each pair's cell (n).
+
+    Places are indices into the flattened channels.
+    """
     assert view.albedo is not None  # `imbalances` has checked it
     width = view.shape[1]
     pixels = sample(view.reflecting, SAMPLES)
@@ -114,17 +127,17 @@ def neighbors(view: View, color: Array) -> tuple[Array, Array, Whole]:
         pixels < view.depth.size - width
     ]  # a pair over a row's end is far apart, so the tests below reject it
     pair = np.concatenate([np.stack([pixels, pixels + step]) for step in (1, width)], axis=1)
-    normal, depth = view.normal.reshape(-1, 3)[pair], view.depth.ravel()[pair]
-    alike = view.reflecting.ravel()[pair[1]] & ((normal[0] * normal[1]).sum(axis=-1) > 0.99)
-    alike &= np.abs(depth[0] - depth[1]) < 0.1 * depth[0]
-    light, albedo = (values.reshape(-1, 3)[pair[:, alike]].reshape(2, -1) for values in (color, view.albedo))
-    told = (albedo.min(axis=0) > DARK) & (light.max(axis=0) > 0)
-    order = np.argsort(-albedo[:, told], axis=0)
-    light, albedo = (np.take_along_axis(values[:, told], order, axis=0) for values in (light, albedo))
-    level = np.digitize(np.sqrt(albedo[0] * albedo[1]), LEVELS)
+    depth = view.depth.ravel()[pair]
+    pair = pair[:, view.reflecting.ravel()[pair[1]] & (np.abs(depth[0] - depth[1]) < 0.1 * depth[0])]
+    normal = view.normal.reshape(-1, 3).take(pair, axis=0)
+    pair = pair[:, np.einsum("nc,nc->n", *normal) > 0.99]
+    place = (3 * pair[..., None] + np.arange(3)).reshape(2, -1)
+    place = np.where(np.less(*view.albedo.ravel()[place]), place[::-1], place)
+    albedo = view.albedo.ravel()[place]
     contrast = np.digitize(np.log(albedo[0] / albedo[1]), CONTRASTS)
-    differ = contrast > 0
-    return light[:, differ], albedo[:, differ], (level * len(CONTRASTS) + contrast - 1)[differ]
+    told = (contrast > 0) & (albedo[1] > DARK)
+    level = np.digitize(np.sqrt(albedo[0] * albedo[1]), LEVELS)
+    return place[:, told], albedo[:, told], (level * len(CONTRASTS) + contrast - 1)[told]
 
 
 def judge_curve(sums: Array) -> list[Finding | Unknown]:

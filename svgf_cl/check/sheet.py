@@ -41,7 +41,7 @@ def sheet(before: Frame, now: Frame) -> Bytes:
 def left_over(before: View, now: View) -> Array:
     """Return the difference of features from the previous frame at the place where motion leads, (h, w), from 0 on."""
     y, x = np.indices(now.shape)
-    there, _ = bilinear(features(before), (x + now.motion[..., 0]).ravel(), (y + now.motion[..., 1]).ravel())
+    there, *_ = bilinear(features(before), (x + now.motion[..., 0]).ravel(), (y + now.motion[..., 1]).ravel())
     return np.where(now.hit, np.abs(features(now) - there.reshape(*now.shape, -1)).sum(axis=-1), 0)
 
 

@@ -5,14 +5,14 @@ Motion leads to the pixels that show the same surface in both frames; their dept
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import lru_cache, reduce
 
 import numpy as np
 
 from svgf_cl.check.camera import path
 from svgf_cl.check.check import Check
 from svgf_cl.check.finding import Finding, Unknown, percent
-from svgf_cl.check.view import Array, Mask, View, Whole, over_channels, sample, shifted
+from svgf_cl.check.view import Array, Mask, View, Whole, beside, length, over_channels, sample
 from svgf_cl.filters import Settings
 
 EDGE = 0.1  # least relative difference of depth between two surfaces
@@ -32,7 +32,7 @@ def followed(before: View, now: View) -> tuple[Mask, tuple[Whole, Whole]]:
     columns, rows = (np.rint(p + now.motion[..., axis]) for axis, p in enumerate((x, y)))
     inside = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
     there = tuple(np.where(inside, p, 0).astype(int) for p in (rows, columns))
-    same = inside & interior(now) & interior(before)[there]
+    same = inside & interior(before)[there] & interior(now)  # in this order, the cache has the previous frame still
     same &= np.abs(now.depth * before.nearness[there] - 1) < EDGE
     return same, (there[0][same], there[1][same])
 
@@ -40,8 +40,10 @@ def followed(before: View, now: View) -> tuple[Mask, tuple[Whole, Whole]]:
 @lru_cache(maxsize=2)  # for a frame and the previous one
 def interior(view: View) -> Mask:
     """Return the pixels without an edge of depth within two pixels."""
-    near = np.stack([shifted(view.nearness, dx, dy) for dx in (-2, 0, 2) for dy in (-2, 0, 2)])
-    smooth: Mask = view.hit & (np.ptp(near, axis=0) < EDGE * view.nearness)
+    least = most = view.nearness
+    for axis in (0, 1):
+        least, most = (reduce(choose, beside(v, axis, 2), v) for choose, v in ((np.minimum, least), (np.maximum, most)))
+    smooth: Mask = view.hit & (most - least < EDGE * view.nearness)
     return smooth
 
 
@@ -79,13 +81,13 @@ def turns(before: View, now: View) -> Array | None:
     The last value says whether the camera turns.
     """
     same, there = followed(before, now)
-    bends = [over_channels(np.maximum, np.abs(shifted(now.normal, *step) - now.normal)) for step in ((1, 0), (0, 1))]
+    bends = [over_channels(np.maximum, np.abs(beside(now.normal, axis)[1] - now.normal)) for axis in (0, 1)]
     plane = sample((np.maximum(*bends) < FLAT)[same] & before.hit[there], SAMPLES)
     normal, past = now.normal[same][plane], before.normal[there][plane]
     if len(normal) < ENOUGH:
         return None
-    apart = np.linalg.norm(normal - past, axis=-1)
-    left = np.linalg.norm(normal @ rotation_between(normal, past).T - past, axis=-1)
+    apart = length(normal - past)
+    left = length(normal @ rotation_between(normal, past).T - past)
     alike = (apart > KEPT) & (left < 0.25 * apart)
     camera = path(now)
     turned = camera is not None and camera.turn(now.shape[0]) > TURNED
@@ -98,7 +100,7 @@ def rotation_between(normal: Array, past: Array) -> Array:
     for _ in range(8):
         u, _, v = np.linalg.svd((past * weight[:, None]).T @ normal)
         rotation: Array = u @ v
-        off = np.linalg.norm(past - normal @ rotation.T, axis=-1)
+        off = length(past - normal @ rotation.T)
         weight = 1 / (1 + (off / max(float(np.median(off)), 1e-5)) ** 2)
     return rotation
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from svgf_cl.check.check import Check
 from svgf_cl.check.finding import Finding, Unknown, percent
-from svgf_cl.check.view import FAR, Array, View, has_normal, in_range, over_channels, pixel_centers, typical
+from svgf_cl.check.view import FAR, Array, View, has_normal, in_range, length, over_channels, pixel_centers, typical
 from svgf_cl.frame import CARRIED, CHANNELS
 
 FIELDS = tuple(name for name in CHANNELS if name != "id")
@@ -81,8 +81,9 @@ def constant(view: View) -> Array | None:
     """Count for each of `CONSTANT` the frames that have it, and those where all hits have one value."""
     if np.count_nonzero(view.hit) < 2:
         return None
-    inside = {name: values[view.hit] for name in CONSTANT if (values := getattr(view, name)) is not None}
-    same = {name: bool((values == values[0]).all()) for name, values in inside.items()}
+    given = {name: values for name in CONSTANT if (values := getattr(view, name)) is not None}
+    first = np.unravel_index(np.argmax(view.hit), view.shape)
+    same = {name: not (view.hit & any_channel(values != values[first])).any() for name, values in given.items()}
     if same["normal"] and on_a_plane(view):  # a picture of a single wall
         same["normal"] = same["depth"] = False
     there = [getattr(view.frame, name) is not None for name in CONSTANT]
@@ -120,9 +121,9 @@ def lengths(view: View) -> Array | None:
     Decoding is from 0..1.
     """
     normal = view.normal[(view.depth > 0) & (view.depth < view.depth.max())]  # the greatest depth may mean a miss
-    length, decoded = np.linalg.norm(normal, axis=-1), np.linalg.norm(2 * normal - 1, axis=-1)
-    encoded = (np.abs(decoded - 1) < UNIT) & (normal.min(axis=-1, initial=1) >= 0)
-    counts = (np.abs(length - 1) < UNIT, encoded, length < 1e-6, length > 1 + UNIT)
+    own, decoded = length(normal), length(2 * normal - 1)
+    encoded = (np.abs(decoded - 1) < UNIT) & (over_channels(np.minimum, normal) >= 0)
+    counts = (np.abs(own - 1) < UNIT, encoded, own < 1e-6, own > 1 + UNIT)
     return np.array([len(normal), *map(np.count_nonzero, counts)], np.float64) if len(normal) else None
 
 

@@ -142,12 +142,18 @@ def over_channels(combine: np.ufunc, values: NDArray[Any]) -> NDArray[Any]:
     return combined
 
 
-def shifted(values: NDArray[Any], dx: int, dy: int) -> NDArray[Any]:
-    """Return the values at (dx, dy) pixels further, (h, w, ...) like `values`; the border is repeated."""
-    height, width = values.shape[:2]
-    rows = np.clip(np.arange(height) + dy, 0, height - 1)
-    columns = np.clip(np.arange(width) + dx, 0, width - 1)
-    return values[rows[:, None], columns]
+def beside(values: NDArray[Any], axis: int, reach: int = 1) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return the values `reach` pixels before and behind, (h, w, ...) like `values`; the border is repeated."""
+    around = np.pad(values, [(reach, reach) if axis == other else (0, 0) for other in range(values.ndim)], "edge")
+    start, end = (0, 2 * reach), (values.shape[axis], values.shape[axis] + 2 * reach)
+    before, behind = (around[:, s:e] if axis else around[s:e] for s, e in zip(start, end, strict=True))
+    return before, behind
+
+
+def length(vectors: NDArray[Any]) -> NDArray[Any]:
+    """Return the lengths (...) of vectors (..., C); `numpy.linalg.norm` over such a short axis is much slower."""
+    lengths: NDArray[Any] = np.sqrt(np.einsum("...c,...c->...", vectors, vectors))
+    return lengths
 
 
 def pixel_centers(shape: Shape) -> tuple[Array, Array]:

@@ -7,13 +7,16 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks import files
 from benchmarks.files import blender, timed, written
+from svgf_cl import Eaw
 from svgf_cl.io.frames import channels_of
 from svgf_cl.io.shot import Shot
 
 
 @pytest.mark.parametrize(("channels", "reader"), [(channels_of, "svgf_cl"), (blender, "blender")])
-def test_each_part_is_timed(channels: Callable, reader: str, tmp_path: Path) -> None:
+def test_each_part_is_timed(channels: Callable, reader: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(files, "DEFAULT", Eaw)  # of few kernels
     paths = written(tmp_path, channels, (18, 32), 4)
     shot = Shot(paths)
     assert shot.reading.reader.name == reader

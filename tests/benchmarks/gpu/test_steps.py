@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +12,7 @@ from benchmarks.gpu.child import Ended
 
 ROOT = Path(__file__).parents[3]
 FOLDER = Path("out")
+COLLECT = ("--collect-only", "-q", "-p", "no:cacheprovider", "-p", "no:faulthandler")
 
 
 def test_all_steps_end_within_ten_minutes() -> None:
@@ -34,12 +33,12 @@ def test_a_dry_run_keeps_no_tuning() -> None:
 
 
 @pytest.mark.parametrize("plan", [steps.full, steps.dry])
-def test_the_tests_that_are_chosen_are_there(plan) -> None:
+def test_the_tests_that_are_chosen_are_there(plan, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
     for step in plan(FOLDER):
         if step.command[0] == "pytest":
             chosen = [word for word in step.command[len(steps.PYTEST) :] if not word.startswith("--junitxml")]
-            command = [sys.executable, "-m", "pytest", "--collect-only", "-q", *chosen]
-            assert subprocess.run(command, cwd=ROOT, capture_output=True).returncode == 0
+            assert pytest.main([*COLLECT, *chosen]) == 0
 
 
 def step(result: Path) -> steps.Step:

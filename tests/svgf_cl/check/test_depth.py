@@ -49,7 +49,7 @@ def test_coarse_depth_tells_nothing_rather_than_something_wrong(frame: Frame) ->
 
 
 def test_the_origin_of_planes() -> None:
-    distance = 1 / np.array([[0.2, 0.25, 0.3], [0.1, 0.15, 0.2], [0.3, 0.25, 0.2]])
+    distance = 1 / np.array([[0.2, 0.25, 0.3], [0.1, 0.15, 0.2], [0.3, 0.25, 0.2]]).T
     assert origin(distance) == 0
     assert origin(distance + 3) == pytest.approx(3)
     assert origin(7 - distance) == pytest.approx(7)
