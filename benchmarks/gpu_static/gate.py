@@ -7,6 +7,7 @@ import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 
 from benchmarks.builds import Build
@@ -17,7 +18,9 @@ from benchmarks.gpu_static.usage import Compiled, Instructions, RejectedError, U
 from svgf_cl.device.tuning import GPU_TUNING
 
 ARCHITECTURES = (*nvidia.ARCHITECTURES, *amd.ARCHITECTURES)
-TARGETS = (*ARCHITECTURES, spirv.NAME)
+# Targets that share what clang writes: NVIDIA's are assembled from the same PTX.
+TOGETHER = (nvidia.ARCHITECTURES, *((name,) for name in amd.ARCHITECTURES), (spirv.NAME,))
+TARGETS = tuple(chain(*TOGETHER))
 WORK_GROUP = GPU_TUNING.work_group[0] * GPU_TUNING.work_group[1]
 
 
@@ -78,34 +81,43 @@ def compile_all(tools: Tools, builds: Sequence[Build], advance: Callable[[], Non
     Results are in the order of the builds.
     """
 
-    def compiled(job: tuple[Build, str]) -> Outcome:
-        outcome = compile_one(tools, *job)
-        advance()
-        return outcome
+    def compiled(job: tuple[Build, tuple[str, ...]]) -> list[Outcome]:
+        outcomes = compile_together(tools, *job)
+        for _ in outcomes:
+            advance()
+        return outcomes
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return list(pool.map(compiled, ((build, target) for build in builds for target in TARGETS)))
+        return list(chain(*pool.map(compiled, ((build, targets) for build in builds for targets in TOGETHER))))
 
 
-def compile_one(tools: Tools, build: Build, target: str) -> Outcome:
-    """Compile a build for a target."""
+def compile_together(tools: Tools, build: Build, targets: tuple[str, ...]) -> list[Outcome]:
+    """Compile a build for targets that share a compiler's output."""
     with tempfile.TemporaryDirectory() as folder:
         try:
-            return Outcome(build, target, kernels(tools, build, target, Path(folder)))
+            found = kernels(tools, build, targets, Path(folder))
         except RejectedError as error:
-            expected = "a valid module" if target == spirv.NAME else "kernels that compile"
-            place = f"{build.source}.cl on {target} ({build.variant})"
-            return Outcome(build, target, fault=f"{place}: expected {expected}; {error}")
+            expected = "a valid module" if targets == (spirv.NAME,) else "kernels that compile"
+            return [
+                Outcome(
+                    build,
+                    target,
+                    fault=f"{build.source}.cl on {target} ({build.variant}): expected {expected}; {error}",
+                )
+                for target in targets
+            ]
+    return [Outcome(build, target, found[target]) for target in targets]
 
 
-def kernels(tools: Tools, build: Build, target: str, folder: Path) -> dict[str, Compiled]:
-    """The kernels of a build on a target; for SPIR-V only the validity is checked."""
-    if target == spirv.NAME:
-        spirv.validate(tools, build, folder)
-        return {}
-    if target in nvidia.ARCHITECTURES:
-        return nvidia.compiled(tools, target, build, folder)
-    return amd.compiled(tools, target, build, folder)
+def kernels(tools: Tools, build: Build, targets: tuple[str, ...], folder: Path) -> dict[str, dict[str, Compiled]]:
+    """The kernels of a build by target; for SPIR-V only the validity is checked."""
+    if targets == nvidia.ARCHITECTURES:
+        return nvidia.compiled(tools, build, folder)
+    (target,) = targets
+    if target != spirv.NAME:
+        return {target: amd.compiled(tools, target, build, folder)}
+    spirv.validate(tools, build, folder)
+    return {target: {}}
 
 
 def rows(tools: Tools, outcomes: Sequence[Outcome]) -> list[Row]:

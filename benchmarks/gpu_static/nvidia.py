@@ -50,19 +50,26 @@ LOADS, STORES = r"LDG?\b", r"STG?\b"
 INTEGER = r"U?(?:V?IADD3?|IMAD(?!\.MOV)|LEA|SHF|SHL|SHR)(?:\.|$)"
 
 
-def compiled(tools: Tools, architecture: str, build: Build, folder: Path) -> dict[str, Compiled]:
-    """Compile a build and return its kernels by name, with their machine code.
+def compiled(tools: Tools, build: Build, folder: Path) -> dict[str, dict[str, Compiled]]:
+    """Compile a build once, and assemble it for each architecture: kernels by architecture and name.
 
     Raises
     ------
     RejectedError
         If a tool refuses it.
     """
-    ptx, binary = folder / "kernel.ptx", folder / "kernel.cubin"
+    ptx = folder / "kernel.ptx"
     library = passed("-mlink-builtin-bitcode", str(tools.libclc))
     functions = included(FUNCTIONS, folder)
-    target = (*TARGET, *PRECISION, *QUIET, *passed("-target-cpu", architecture), *library, *functions)
+    # PTX of the oldest architecture, because each later one takes it, too.
+    target = (*TARGET, *PRECISION, *QUIET, *passed("-target-cpu", ARCHITECTURES[0]), *library, *functions)
     said_by([tools.clang, *language(build), *target, "-S", "-o", ptx, written(build, folder)])
+    return {architecture: assembled(tools, architecture, ptx) for architecture in ARCHITECTURES}
+
+
+def assembled(tools: Tools, architecture: str, ptx: Path) -> dict[str, Compiled]:
+    """Assemble PTX, and return its kernels by name, with their machine code."""
+    binary = ptx.with_suffix(f".{architecture}.cubin")
     report = said_by([tools.ptxas, "-v", f"-arch={architecture}", ptx, "-o", binary])
     return {name: Compiled(usage, section(binary, f".text.{name}")) for name, usage in parse(report).items()}
 

@@ -103,6 +103,7 @@ def test_what_does_not_compile_is_told_for_every_target(compilers: Tools, monkey
 def test_a_module_that_is_not_valid_is_told(compilers: Tools, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(spirv, "TARGET", tuple(option for option in spirv.TARGET if option != "-Dinline=static"))
     atrous = next(build for build in variants() if build.source == "atrous")
-    fault = gate.compile_one(compilers, atrous, spirv.NAME).fault
+    (outcome,) = gate.compile_together(compilers, atrous, (spirv.NAME,))
+    fault = outcome.fault
     assert fault.startswith("atrous.cl on SPIR-V (kalman by default; ")
     assert "expected a valid module; spirv-val: " in fault
