@@ -5,16 +5,36 @@ from __future__ import annotations
 import os
 import signal
 
+import dask
 from distributed import LocalCluster
+from distributed.utils import get_mp_context
 
-WORKERS = 3
+from svgf_cl.device import tuning
+from tests.denoising import NARROW
+
+WORKERS = 2
+
+# Every worker is forked from one process that has imported what they all need. Such a worker begins so soon that it may
+# ask a killed one for its results, of whose death the scheduler has not heard yet: it shall not try for long.
+dask.config.set({"distributed.worker.multiprocessing-method": "forkserver", "distributed.comm.timeouts.connect": "5s"})
+get_mp_context().set_forkserver_preload(["pytest", "distributed.nanny", "svgf_cl.chunks", __name__])
 
 
 def local_cluster(workers: int = WORKERS, *, processes: bool = True) -> LocalCluster:
     """A scheduler with workers that are processes, each started again when it dies; or threads."""
     return LocalCluster(
-        n_workers=workers, threads_per_worker=1, processes=processes, dashboard_address=":0", protocol="tcp://"
+        n_workers=workers,
+        threads_per_worker=1,
+        processes=processes,
+        dashboard_address=":0",
+        protocol="tcp://",
+        preload=__name__,
     )
+
+
+def dask_setup(worker: object) -> None:
+    """What a worker does when it starts: it takes vectors of the width that this process takes."""
+    tuning.default_tuning = lambda device: NARROW
 
 
 def kill(cluster: LocalCluster, count: int) -> None:
