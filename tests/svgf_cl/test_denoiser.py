@@ -464,7 +464,7 @@ class TestMemory:
 
     def test_16_bits_save_memory(self) -> None:
         den = Denoiser((90, 160), settings=Settings(half_guides=True, half_history=True))
-        den.denoise(wall((90, 160)))
+        den.warm_up(Inputs.of(wall((90, 160))))
         assert den.nbytes == 13 * 4 * Layout(90, 160, den.tuning.row_alignment).plane
 
     @pytest.mark.parametrize("halves", [False, True])
