@@ -96,7 +96,7 @@ def sequence_at(width: int) -> list[np.ndarray]:
     return [den.denoise(frame) for frame in bumpy_sequence(SPLIT)]
 
 
-@pytest.mark.parametrize("width", [1, 4, 8])
+@pytest.mark.parametrize("width", [1, 4])  # with 8, tests/kernels and the tuner's test look at the same kernels
 def test_vector_width_does_not_matter(width: int) -> None:
     for got, expected in zip(sequence_at(width), sequence_at(16), strict=True):
         assert_alike(got, expected)
