@@ -15,7 +15,7 @@ from svgf_cl import Denoiser, Frame
 from svgf_cl.compare.metrics import psnr
 from svgf_cl.io.display import display, to_bytes, write_image
 
-HEIGHT, WIDTH = 288, 512
+HEIGHT, WIDTH = 216, 384
 FRAMES = 24
 TRUTH_SAMPLES = 128  # per pixel
 CHANNELS = 16

@@ -9,20 +9,34 @@ import dask
 from distributed import LocalCluster
 from distributed.utils import get_mp_context
 
+from svgf_cl.device import tuning
+from tests.denoising import NARROW
+
 WORKERS = 2
 
-# Workers are copies of a process that has imported all this once: otherwise it takes each 1.5 seconds. What is
-# not installed is left out.
-IMPORTED = ["distributed", "svgf_cl.cli", "svgf_cl.chunks", "svgf_cl_tracer.api"]
+# Workers are forked from one process that has imported what they need, which takes 1.5 seconds; it leaves out what is
+# not installed. Such a worker begins so soon that it may ask a killed one for its results, of whose death the scheduler
+# has not heard yet: it must not try for long.
+IMPORTED = ["pytest", "distributed.nanny", "svgf_cl.cli", "svgf_cl.chunks", "svgf_cl_tracer.api", __name__]
+dask.config.set({"distributed.worker.multiprocessing-method": "forkserver", "distributed.comm.timeouts.connect": "5s"})
+get_mp_context().set_forkserver_preload(IMPORTED)
 
 
 def local_cluster(workers: int = WORKERS, *, processes: bool = True) -> LocalCluster:
     """A scheduler with workers that are processes, each started again when it dies; or threads."""
-    dask.config.set({"distributed.worker.multiprocessing-method": "forkserver"})
-    get_mp_context().set_forkserver_preload(IMPORTED)  # after the call, which sets what Dask imports
     return LocalCluster(
-        n_workers=workers, threads_per_worker=1, processes=processes, dashboard_address=":0", protocol="tcp://"
+        n_workers=workers,
+        threads_per_worker=1,
+        processes=processes,
+        dashboard_address=":0",
+        protocol="tcp://",
+        preload=__name__,
     )
+
+
+def dask_setup(worker: object) -> None:
+    """Let a worker that starts use vectors of the same width as this process."""
+    tuning.default_tuning = lambda device: NARROW
 
 
 def kill(cluster: LocalCluster, count: int) -> None:

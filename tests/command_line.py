@@ -11,18 +11,21 @@ import pytest
 
 from svgf_cl.cli import main
 from svgf_cl.io import cache
+from tests.denoising import NARROW
 
 # Of the frames that most tests begin with.
 NAMES = [f"frame.{number:04d}.exr" for number in range(3)]
 
 # Sends a signal to the process as the picture with that number is whole but has not got its name yet. What the tracer
-# has compiled lies in the user's own cache folder, wherever the rest may be kept.
+# has compiled lies in the user's own cache folder, wherever the rest may be kept. Vectors are narrow, as in the parent.
 KILLED = """
 import os, signal, sys
 from pathlib import Path
 {first}
-from svgf_cl.io import cache
 from svgf_cl.cli import main
+from svgf_cl.device import tuning
+from svgf_cl.io import cache
+tuning.default_tuning = lambda device: tuning.{tuning!r}
 left, folder, rename = int(sys.argv[1]), Path(sys.argv[2]), os.replace
 def rename_or_die(source, target):
     global left
@@ -51,7 +54,7 @@ def run_killed(after: int, *argv: str | Path, first: str = "") -> None:
 
 def run_signalled(name: str, after: int, *argv: str | Path, first: str = "") -> subprocess.CompletedProcess[str]:
     """Run ``svgf-cl argv`` in a process that gets a signal after so many EXR files."""
-    program = KILLED.format(first=first, signal=name)
+    program = KILLED.format(first=first, signal=name, tuning=NARROW)
     command = [sys.executable, "-c", program, str(after), cache.cache_folder(), *argv]
     return subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
 

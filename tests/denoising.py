@@ -13,6 +13,9 @@ from svgf_cl import Denoiser, Frame, Settings, Tuning
 from svgf_cl.device import tuning
 from svgf_cl.filters.filter import Filter
 
+# A tuning whose kernels PoCL compiles in half the time of those of the default.
+NARROW = Tuning(vector_width=4, work_group=(16, 1))
+
 
 def feed(*frames: Frame, kind: type[Filter] = Settings, **chosen: Any) -> tuple[np.ndarray, Denoiser]:
     """Denoise a sequence with these settings: the last picture, and the denoiser with all stages of that frame."""

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 from svgf_cl.oracle.taps import Array, Mask
 
+Codes = NDArray[np.int32]
+
 ALBEDO_FLOOR, CHANNEL_FLOOR = 0.02, 0.04  # absolute; as a share of the greatest channel
 DARK = np.float32(0.004)  # albedos far below this are all alike
 OCTAVE = 64  # codes per octave
@@ -19,15 +21,14 @@ def divisor(albedo: Array) -> Array:
     return divided_by
 
 
-def alike(albedo: Array, other: Array, octaves: float) -> Mask:
+def alike(codes: Codes, others: Codes, octaves: float) -> Mask:
     """Section 1: whether the codes of two albedos (..., 3) differ by at most `octaves` in every channel."""
-    off = np.abs(albedo_codes(albedo) - albedo_codes(other)).max(axis=-1)
-    same: Mask = off <= int(octaves * OCTAVE)
+    same: Mask = np.abs(codes - others).max(axis=-1) <= int(octaves * OCTAVE)
     return same
 
 
-def albedo_codes(albedo: Array) -> NDArray[np.int32]:
+def albedo_codes(albedo: Array) -> Codes:
     """Section 1: 64ths of an octave from `DARK` to albedo + `DARK`, read from the bits of a float: (..., 3)."""
     above = albedo.astype(np.float32) + DARK
-    codes: NDArray[np.int32] = (above.view(np.int32) - DARK.view(np.int32)) >> 17
+    codes: Codes = (above.view(np.int32) - DARK.view(np.int32)) >> 17
     return codes

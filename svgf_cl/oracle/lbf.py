@@ -9,10 +9,10 @@ import numpy as np
 
 from svgf_cl.filters.lbf import Lbf, Network
 from svgf_cl.frame import Shape
-from svgf_cl.oracle.albedo import OCTAVE, albedo_codes
+from svgf_cl.oracle.albedo import OCTAVE
 from svgf_cl.oracle.bilateral import Deviations, counts, surface_distance
 from svgf_cl.oracle.spatial import luminance_tolerance, variance
-from svgf_cl.oracle.taps import Array, Mask, Offset, luminance, shifted, smoothed, square
+from svgf_cl.oracle.taps import Array, Mask, Offset, luminance, shifted, smoothed, square, window
 from svgf_cl.oracle.temporal import Guides, Made, Stages, TemporalOracle, accumulated
 
 WINDOW = 10  # pixels to either side, for the filter
@@ -31,9 +31,7 @@ def squashed(value: Array, halfway: float) -> Array:
 
 def features(light: Array, guides: Guides) -> dict[str, Array]:
     """The features by name, each (S or 1, H, W, channels); albedo is in octaves, as the mean of its channels."""
-    octaves = (
-        np.zeros(guides.depth.shape) if guides.albedo is None else albedo_codes(guides.albedo).mean(axis=-1) / OCTAVE
-    )
+    octaves = np.zeros(guides.depth.shape) if guides.codes is None else guides.codes.mean(axis=-1) / OCTAVE
     return {
         "light": luminance(light)[..., None],
         "depth": guides.depth[None, ..., None],
@@ -117,9 +115,7 @@ def filtered(light: Array, noise: Array, chosen: Array, guides: Guides, settings
     luma = luminance(light)
     tolerance = luminance_tolerance(1.0, smoothed(noise, guides.hit), luma)
     color, total = light.copy(), np.ones_like(luma)
-    for offset in square(WINDOW):
-        if not any(offset):
-            continue
+    for offset in window(WINDOW, guides.depth.shape):
         y, x, _ = shifted(offset, guides.depth.shape)
         d_z, d_n = surface_distance(guides, deviations, offset)
         d_l = np.square((luma - luma[:, y, x]) / tolerance)

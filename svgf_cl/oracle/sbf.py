@@ -10,7 +10,7 @@ import numpy as np
 from svgf_cl.filters.sbf import Sbf
 from svgf_cl.oracle.bilateral import Deviations, counts, surface_distance
 from svgf_cl.oracle.spatial import surface_weight, variance
-from svgf_cl.oracle.taps import Array, depth_gradient, luminance, shifted, square
+from svgf_cl.oracle.taps import Array, depth_gradient, luminance, shifted, square, window
 from svgf_cl.oracle.temporal import Guides, Made, Stages, TemporalOracle, accumulated
 
 SIGMAS = (1, 2, 4, 8)  # pixels
@@ -18,23 +18,24 @@ MOST_OF_A_FRAME = 0.9  # without accumulation, nothing is known of the variance 
 SMOOTHED = 3  # pixels to either side, for smoothing the risk
 
 
-def scale(light: Array, guides: Guides, sigma: float, settings: Sbf) -> tuple[Array, Array]:
-    """Section 8: light (S, H, W, 3) filtered at one scale, and the sum of the weights, (H, W).
+def scales(light: Array, guides: Guides, settings: Sbf) -> list[tuple[Array, Array]]:
+    """Section 8: light (S, H, W, 3) filtered at each scale, and the sum of the weights, (H, W).
 
     The centre's weight is 1.
     """
     deviations = Deviations.of(guides, settings.depth_slope_floor)
-    color, total = light.copy(), np.ones(guides.depth.shape)
-    for offset in square(int(2 * sigma)):
-        if not any(offset):
-            continue
+    sums = [(light.copy(), np.ones(guides.depth.shape)) for _ in SIGMAS]
+    for offset in window(2 * max(SIGMAS), guides.depth.shape):
         y, x, _ = shifted(offset, guides.depth.shape)
         d_z, d_n = surface_distance(guides, deviations, offset)
-        exponent = d_z / settings.gamma_depth**2 + d_n / settings.gamma_normal**2 + np.dot(offset, offset) / sigma**2
-        w = np.where(counts(guides, offset, settings), np.exp(-exponent / 2), 0)
-        color += w[..., None] * light[:, y, x]
-        total += w
-    return color / total[..., None], total
+        exponent = d_z / settings.gamma_depth**2 + d_n / settings.gamma_normal**2
+        seen, tap = counts(guides, offset, settings), light[:, y, x]
+        for sigma, (color, total) in zip(SIGMAS, sums, strict=True):
+            if np.abs(offset).max() <= 2 * sigma:
+                w = np.where(seen, np.exp(-(exponent + np.dot(offset, offset) / sigma**2) / 2), 0)
+                color += w[..., None] * tap
+                total += w
+    return [(color / total[..., None], total) for color, total in sums]
 
 
 def risk(filtered: Array, total: Array, light: Array, noise: Array) -> Array:
@@ -43,20 +44,20 @@ def risk(filtered: Array, total: Array, light: Array, noise: Array) -> Array:
 
 
 def smoothed_over_surface(values: Array, guides: Guides, settings: Sbf) -> Array:
-    """Sum of values (S, H, W) over a window, with weights between surfaces."""
+    """Sum of values (..., H, W) over a window, with weights between surfaces."""
     gradient = depth_gradient(guides.depth)
     total = np.zeros_like(values)
     for offset in square(SMOOTHED):
         y, x, _ = shifted(offset, guides.depth.shape)
         w = surface_weight(guides, gradient, offset, 1, settings) if any(offset) else 1
-        total += w * values[:, y, x]
+        total += w * values[..., y, x]
     return total
 
 
-def chosen(scales: Sequence[Array], risks: Sequence[Array], guides: Guides, settings: Sbf) -> Array:
+def chosen(lights: Sequence[Array], risks: Sequence[Array], guides: Guides, settings: Sbf) -> Array:
     """The light (S, H, W, 3) of the scale with the least smoothed risk; of two equal scales, the smaller one."""
-    best = np.argmin([smoothed_over_surface(each, guides, settings) for each in risks], axis=0)
-    light: Array = np.take_along_axis(np.stack(scales), best[None, ..., None], axis=0)[0]
+    best = np.argmin(smoothed_over_surface(np.stack(risks), guides, settings), axis=0)
+    light: Array = np.take_along_axis(np.stack(lights), best[None, ..., None], axis=0)[0]
     return light
 
 
@@ -72,11 +73,10 @@ class Oracle(TemporalOracle[Sbf]):
         share = np.minimum(np.maximum(1 / np.maximum(now["history_length"], 2), alpha / (2 - alpha)), MOST_OF_A_FRAME)
         noise = now["variance"] * share / (1 - share)
         made: dict[str, Array] = {}
-        for number, sigma in enumerate(SIGMAS, 1):
-            filtered, total = scale(now["accumulated"], guides, sigma, self.settings)
+        for number, (filtered, total) in enumerate(scales(now["accumulated"], guides, self.settings), 1):
             made |= {f"scale_{number}": filtered, f"risk_{number}": risk(filtered, total, now["accumulated"], noise)}
         yield "bilateral", made
         numbers = range(1, len(SIGMAS) + 1)
-        scales, risks = ([now[f"{name}_{number}"] for number in numbers] for name in ("scale", "risk"))
-        yield "select_scale", {"filtered": chosen(scales, risks, guides, self.settings)}
+        lights, risks = ([now[f"{name}_{number}"] for number in numbers] for name in ("scale", "risk"))
+        yield "select_scale", {"filtered": chosen(lights, risks, guides, self.settings)}
         return "filtered"

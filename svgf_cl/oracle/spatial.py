@@ -71,9 +71,9 @@ def facet_weight(facets: Facets, offset: Offset, tolerance: Tolerance) -> Array:
 def same_albedo(guides: Guides, offset: Offset, octaves: float) -> Mask:
     """Section 4: w_a for the tap p + offset, (H, W); true at the centre."""
     y, x, inside = shifted(offset, guides.depth.shape)
-    if guides.albedo is None or not any(offset):
+    if guides.codes is None or not any(offset):
         return inside
-    return alike(guides.albedo, guides.albedo[y, x], octaves)
+    return alike(guides.codes, guides.codes[y, x], octaves)
 
 
 def variance(past: Accumulated, guides: Guides, settings: SpatialFilter) -> Array:

@@ -5,6 +5,8 @@ Pixel centres are at whole coordinates; offsets and positions are (x, y), array 
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -42,6 +44,12 @@ def square(radius: int) -> list[Offset]:
     return [(dx, dy) for dy in reach for dx in reach]
 
 
+def window(radius: int, shape: Shape) -> list[Offset]:
+    """The taps of `square` that are inside an image for any of its pixels, without the centre."""
+    height, width = shape
+    return [(dx, dy) for dx, dy in square(radius) if (dx or dy) and abs(dx) < width and abs(dy) < height]
+
+
 def locate(x: Indices, y: Indices, shape: Shape) -> tuple[Indices, Indices, Mask]:
     """Rows and columns clamped into an image, and whether they were inside it."""
     height, width = shape
@@ -51,8 +59,16 @@ def locate(x: Indices, y: Indices, shape: Shape) -> tuple[Indices, Indices, Mask
 
 def shifted(offset: Offset, shape: Shape, step: int = 1) -> tuple[Indices, Indices, Mask]:
     """`locate` the tap p + step * offset of every pixel: rows (H, 1), columns (1, W), inside (H, W)."""
-    y, x = np.ogrid[: shape[0], : shape[1]]
-    return locate(x + step * offset[0], y + step * offset[1], shape)
+    columns, inside_x = _moved(step * offset[0], shape[1])
+    rows, inside_y = _moved(step * offset[1], shape[0])
+    return rows[:, None], columns[None], inside_y[:, None] & inside_x
+
+
+@functools.lru_cache(maxsize=1024)
+def _moved(distance: int, length: int) -> tuple[Indices, Mask]:
+    """The indices 0 .. length - 1 moved along their axis and clamped to it, and whether they were on it: (length,)."""
+    moved = np.arange(length) + distance
+    return np.clip(moved, 0, length - 1), (moved >= 0) & (moved < length)
 
 
 def reprojected(motion: Array) -> Array:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Generator, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import ClassVar, Generic, TypeVar
 
 import numpy as np
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 
 from svgf_cl.filters.temporal import TemporalFilter
 from svgf_cl.frame import Frame, Shape
-from svgf_cl.oracle.albedo import alike, divisor
+from svgf_cl.oracle.albedo import Codes, albedo_codes, alike, divisor
 from svgf_cl.oracle.taps import (
     Array,
     Indices,
@@ -76,7 +77,12 @@ class Guides:
         """albedo', by which light is divided: (H, W, 3), or 1 if there is no albedo."""
         return np.ones(1) if self.albedo is None else divisor(self.albedo)
 
-    @property
+    @cached_property
+    def codes(self) -> Codes | None:
+        """The codes of albedo, which tell whether two are alike: (H, W, 3)."""
+        return None if self.albedo is None else albedo_codes(self.albedo)
+
+    @cached_property
     def hit(self) -> Mask:
         """Whether each pixel is a hit, (H, W)."""
         return self.depth > 0
@@ -211,9 +217,8 @@ def footprint(guides: Guides, previous: Guides, settings: TemporalFilter) -> Foo
     x, y, b = (np.concatenate(pair) for pair in zip(bilinear_taps(position), nearest_taps(position), strict=True))
     b *= consistent(x, y, guides, previous, settings)
     rows, columns, _ = locate(x, y, guides.depth.shape)
-    if guides.albedo is not None and previous.albedo is not None:
-        past_albedo = previous.albedo[rows, columns]
-        b *= np.where(alike(guides.albedo, past_albedo, settings.albedo_threshold), 1, OTHERS_WEIGHT)
+    if guides.codes is not None and previous.codes is not None:
+        b *= np.where(alike(guides.codes, previous.codes[rows, columns], settings.albedo_threshold), 1, OTHERS_WEIGHT)
     enough = b[:4].sum(axis=0) > HISTORY_WEIGHT
     b[:4] *= enough
     b[4:] *= ~enough

@@ -14,7 +14,7 @@ import numpy as np
 import pyopencl as cl
 import pytest
 
-from svgf_cl import Denoiser, Frame, Inputs, Kalman, Lbf, Settings
+from svgf_cl import Accumulation, Denoiser, Frame, Inputs, Kalman, Lbf, Settings
 from svgf_cl.device.arguments import layout_of
 from svgf_cl.device.tuning import GPU_TUNING, Tuning, best_tuning
 from svgf_cl.export.folder import write_plan
@@ -66,10 +66,9 @@ def run(host: Path, queue: cl.CommandQueue, *arguments: Path | str) -> subproces
 
 
 CASES = {
-    "default": (Kalman(), FULL, None),
-    "two signals": (Kalman(taa=True), SPLIT, GPU_TUNING),
+    "two signals": (Kalman(taa=True), SPLIT, replace(GPU_TUNING, work_group=(8, 2))),
     "svgf": (Settings(taa=True), FULL, Tuning(vector_width=4, work_group=(1024, 64))),  # which no device can run
-    "network": (Lbf(), PLAIN, GPU_TUNING),
+    "network": (Lbf(), PLAIN, None),
 }
 
 
@@ -113,7 +112,7 @@ def test_compilers_have_nothing_to_say(compiler: str, tmp_path: Path) -> None:
 def test_wrong_input_is_named(host: Path, queue: cl.CommandQueue, tmp_path: Path) -> None:
     frames = bumpy_sequence(PLAIN, count=1, shape=SHAPE)
     plan, given, out = (tmp_path / name for name in ("plan", "frames", "out"))
-    plan_for(plan, Settings(iterations=1), frames[0], GPU_TUNING)
+    plan_for(plan, Accumulation(), frames[0], GPU_TUNING)
     write_frames(given, frames)
     out.mkdir()
 

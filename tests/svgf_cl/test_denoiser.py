@@ -96,7 +96,7 @@ def sequence_at(width: int) -> list[np.ndarray]:
     return [den.denoise(frame) for frame in bumpy_sequence(SPLIT)]
 
 
-@pytest.mark.parametrize("width", [1, 4, 8])
+@pytest.mark.parametrize("width", [1, 4])  # with 8, tests/kernels and the tuner's test look at the same kernels
 def test_vector_width_does_not_matter(width: int) -> None:
     for got, expected in zip(sequence_at(width), sequence_at(16), strict=True):
         assert_alike(got, expected)
@@ -464,7 +464,7 @@ class TestMemory:
 
     def test_16_bits_save_memory(self) -> None:
         den = Denoiser((90, 160), settings=Settings(half_guides=True, half_history=True))
-        den.denoise(wall((90, 160)))
+        den.warm_up(Inputs.of(wall((90, 160))))
         assert den.nbytes == 13 * 4 * Layout(90, 160, den.tuning.row_alignment).plane
 
     @pytest.mark.parametrize("halves", [False, True])

@@ -39,13 +39,23 @@ def run_all(job: Job) -> Iterator[Done]:
     return run(job, Chunk(0, range(count), count))
 
 
+@pytest.fixture(scope="module")
+def shots(tmp_path_factory: pytest.TempPathFactory) -> dict[bool, Path]:
+    """Folders of six frames, by whether there is a gap in their numbers; not to be changed."""
+    folders = {gap: tmp_path_factory.mktemp("shot") for gap in (False, True)}
+    for number, frame in enumerate(room_frames((8, 8), 6)):
+        for gap, folder in folders.items():
+            write_frame(frame_path(folder, number + 10 * (gap and number > 3)), frame)
+    return folders
+
+
 @pytest.mark.parametrize("look_ahead", [None, 0, 1, 2])
 @pytest.mark.parametrize("gap", [False, True])
 @pytest.mark.parametrize("chunk", [Chunk(0, range(6), 6), Chunk(1, range(3, 5), 6), Chunk(2, range(2, 3), 3)])
-def test_it_is_known_how_many_steps_there_are(chunk: Chunk, gap: bool, look_ahead: int | None, tmp_path: Path) -> None:
-    for number, frame in enumerate(room_frames((8, 8), 6)):
-        write_frame(frame_path(tmp_path, number + 10 * (gap and number > 3)), frame)
-    job = job_of(find_frames([tmp_path], allow_gaps=gap), tmp_path / "out", look_ahead=look_ahead)
+def test_it_is_known_how_many_steps_there_are(
+    chunk: Chunk, gap: bool, look_ahead: int | None, shots: dict[bool, Path], tmp_path: Path
+) -> None:
+    job = job_of(find_frames([shots[gap]], allow_gaps=gap), tmp_path / "out", look_ahead=look_ahead)
     taken: list[None] = []
     done = list(run(job, chunk, advance=lambda: taken.append(None)))
     assert len(done) == len(chunk.written)

@@ -426,12 +426,13 @@ def sample(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
 @pytest.mark.parametrize("sample", ["blender/noisy", "mitsuba/noisy"], indirect=True)
 def test_every_frame_of_a_sample_is_better_by_all_measures(sample: tuple[Path, Path]) -> None:
     folder, out = sample
-    for path in sorted(folder.iterdir()):
+    first, *between, last = sorted(folder.iterdir())
+    for path in (first, *between, last):
         reference = folder.parent / "reference" / path.name
         wanted, noisy, clean = (display(read_picture(file)) for file in (reference, path, out / path.name))
         assert psnr(clean, wanted) > psnr(noisy, wanted) + 3
         assert ssim(clean, wanted) > ssim(noisy, wanted) + 0.1
-        if not why_no_flip():
+        if path not in between and not why_no_flip():  # FLIP takes as long as all else
             assert flip(clean, wanted) < flip(noisy, wanted)
 
 

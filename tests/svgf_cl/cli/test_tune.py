@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from svgf_cl import Accumulation, Denoiser
 from svgf_cl.bench import tuner
 from svgf_cl.device import tuning, user_arrays
 from tests.command_line import run
@@ -19,6 +21,7 @@ def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Where a quick search stores what it finds, however busy this machine is."""
     monkeypatch.setattr(tuning, "cache_folder", lambda: tmp_path)
     monkeypatch.setattr(tuner, "CHOICES", {"vector_width": (4, 8, 16), "row_alignment": (16, 256)})
+    monkeypatch.setattr(tuner, "Denoiser", partial(Denoiser, settings=Accumulation()))  # the quickest to compile
     monkeypatch.setattr(tuner, "STEADY", float("inf"))
     return tmp_path / tuning.STORE
 

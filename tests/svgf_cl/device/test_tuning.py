@@ -12,7 +12,7 @@ import numpy as np
 import pyopencl as cl
 import pytest
 
-from svgf_cl import Denoiser, DeviceError, Settings, SvgfError, Tuning
+from svgf_cl import Denoiser, DeviceError, Eaw, SvgfError, Tuning
 from svgf_cl.device import tuning
 from svgf_cl.device.launch import Grid
 from svgf_cl.device.tuning import best_tuning, default_tuning, forget_tuning, store_tuning, stored_tuning
@@ -152,6 +152,6 @@ def test_a_file_that_cannot_be_used_is_named_and_changes_nothing(damage: str, me
 def test_any_tuning_gives_the_same_picture(chosen: Tuning) -> None:
     noisy = wall((20, 50), color=np.random.default_rng(0).random((20, 50, 3), np.float32))
     with vector_width(16):
-        expected = Denoiser((20, 50), settings=Settings()).denoise(noisy)
-    got = Denoiser((20, 50), settings=Settings(), tuning=chosen).denoise(noisy)
+        expected = Denoiser((20, 50), settings=Eaw(iterations=1)).denoise(noisy)
+    got = Denoiser((20, 50), settings=Eaw(iterations=1), tuning=chosen).denoise(noisy)
     np.testing.assert_allclose(got, expected, rtol=1e-4)

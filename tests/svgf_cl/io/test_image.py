@@ -380,7 +380,8 @@ def test_a_display_window_of_any_size_costs_no_memory(tmp_path: Path) -> None:
 # Files that nobody here wrote
 
 SAMPLES = Path(__file__).parents[4] / "shared" / "samples"
-FILES = sorted((SAMPLES / "openexr").glob("*/*.exr"))
+# Of a sequence, the first file: in the others, the pixels alone differ.
+FILES = sorted(path for path in (SAMPLES / "openexr").glob("*/*.exr") if not re.search(r"\.000[2-9]\.", path.name))
 
 
 def facts(path: Path) -> list[dict[str, object]]:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from svgf_cl.oracle.albedo import alike, divisor
+from svgf_cl.oracle.albedo import albedo_codes, alike, divisor
 
 
 @pytest.mark.parametrize(
@@ -27,11 +27,12 @@ def test_the_channel_that_differs_most_decides() -> None:
     for channel in range(3):
         darker = grey.copy()
         darker[channel] = 0.1  # less than two octaves below, with what is added to both
-        assert alike(grey, darker, 2.0)
-        assert alike(darker, grey, 2.0)
-        assert not alike(grey, darker, 1.75)
-        assert not alike(darker, grey, 1.75)
+        codes, others = albedo_codes(grey), albedo_codes(darker)
+        assert alike(codes, others, 2.0)
+        assert alike(others, codes, 2.0)
+        assert not alike(codes, others, 1.75)
+        assert not alike(others, codes, 1.75)
 
 
 def test_at_eight_octaves_all_are_alike() -> None:
-    assert alike(np.zeros(3), np.ones(3), 8.0)
+    assert alike(albedo_codes(np.zeros(3)), albedo_codes(np.ones(3)), 8.0)
