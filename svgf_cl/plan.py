@@ -153,11 +153,12 @@ class Plan:
 
     def _launches(self, schedule: Schedule) -> list[tuple[Launch, ...]]:
         """Return the launches of each turn."""
-        constants, found = uploaded(self._at.queue, schedule.pipeline), []
+        queue, found = self._at.queue, []
+        compiled, constants = built(queue, schedule), uploaded(queue, schedule.pipeline)
         for _ in range(TURNS):
             self._buffers.begin_frame()
             bound = [fixed | self._own(each) for each, fixed in zip(schedule.passes, constants, strict=True)]
-            found.append(tuple(launch(schedule, *each, self._at) for each in zip(schedule.passes, bound, strict=True)))
+            found.append(tuple(launch(compiled, *each, self._at) for each in zip(schedule.passes, bound, strict=True)))
         return found
 
     def _own(self, scheduled: ScheduledPass) -> dict[str, cl.Buffer]:
@@ -174,22 +175,30 @@ def uploaded(queue: cl.CommandQueue, pipeline: Pipeline) -> list[dict[str, cl.Bu
     return found
 
 
-def launch(schedule: Schedule, scheduled: ScheduledPass, memory: Mapping[str, cl.Buffer], at: Workplace) -> Launch:
-    """Return the launch of a pass of a schedule.
+def built(queue: cl.CommandQueue, schedule: Schedule) -> dict[str, cl.Program]:
+    """Build the source files of a schedule's passes."""
+    sources = dict.fromkeys(scheduled.entry.source for scheduled in schedule.passes)
+    return {source: programs.build(queue.context, queue.device, source, schedule.defines) for source in sources}
+
+
+def launch(
+    compiled: Mapping[str, cl.Program], scheduled: ScheduledPass, memory: Mapping[str, cl.Buffer], at: Workplace
+) -> Launch:
+    """Return the launch of a pass.
 
     Parameters
     ----------
-    schedule : Schedule
+    compiled : mapping of str to pyopencl.Program
+        The source files of the schedule, as `built` returns them.
     scheduled : ScheduledPass
-        One of its passes.
     memory : mapping of str to pyopencl.Buffer
         Its constant arrays and the denoiser's buffers, by the kernel's names.
     at : Workplace
     """
-    entry, device = scheduled.entry, at.queue.device
-    kernel = cl.Kernel(programs.build(at.queue.context, device, entry.source, schedule.defines), entry.kernel)
+    entry = scheduled.entry
+    kernel = cl.Kernel(compiled[entry.source], entry.kernel)
     fixed: dict[str, Argument] = {**scheduled.values, **memory}
-    work_group = fitting(schedule.tuning.work_group, kernel, device)
+    work_group = fitting(at.tuning.work_group, kernel, at.queue.device)
     return Launch(entry, kernel, fixed, whole_groups(scheduled.work_items, work_group), work_group)
 
 

@@ -25,7 +25,7 @@ from svgf_cl.device.tiling import Tiling
 from svgf_cl.filters.margins import margins
 from svgf_cl.filters.pipeline import Buffer, Resource, history_of
 from svgf_cl.filters.stages import Stage, stages
-from svgf_cl.plan import Workplace, launch, uploaded
+from svgf_cl.plan import Workplace, built, launch, uploaded
 from svgf_cl.schedule import Schedule
 
 Events = list[tuple[str, cl.Event]]
@@ -148,12 +148,12 @@ class TilePlan:
     def _made_ready(self) -> Iterator[Step]:
         pipeline, at = self.pipeline, self._at
         schedule = Schedule(pipeline, at.layout, at.tuning, self._past_layout)
-        constants = uploaded(self._queue, pipeline)
+        compiled, constants = built(self._queue, schedule), uploaded(self._queue, pipeline)
         for scheduled, fixed, margin in zip(schedule.passes, constants, margins(pipeline), strict=True):
             past = pipeline.past_of(scheduled.entry)
             arguments = {each.argument for each in past}
             own = {name: (self._past if name in arguments else self._buffers)[of] for name, of in scheduled.own.items()}
-            ready = launch(schedule, scheduled, fixed | own, at)
+            ready = launch(compiled, scheduled, fixed | own, at)
             if past:
                 reach = Reach.of(scheduled.entry)
                 yield Step(ready, [each.resource for each in past], margin + reach.beside, reach)

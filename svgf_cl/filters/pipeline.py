@@ -102,6 +102,10 @@ class Resource:
     over: str = ""
     spacing: int = 1
 
+    def __hash__(self) -> int:
+        # The name is unique, and hashes of all quantities took most of the time of making a pipeline.
+        return hash(self.name)
+
     def __post_init__(self) -> None:
         sizes = [quantity.format.nbytes for quantity in self.quantities]
         narrow = sum(size < sizes[0] for size in sizes)
@@ -348,7 +352,8 @@ class Pipeline:
             if len(set(names)) < len(names):
                 raise ValueError(f"expected passes and stages of different names, got {', '.join(names)}")
         for resource in self.resources:
-            self._check_over(resource)
+            if resource.over:
+                self._check_over(resource)
 
     def _check_over(self, resource: Resource) -> None:
         """Raise `ValueError` if a pass reads the overwritten buffer at another pixel, or after it was overwritten."""
