@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import os
 import signal
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import dask
-from distributed import LocalCluster
+from distributed import LocalCluster, Status
 from distributed.utils import get_mp_context
 
 from svgf_cl.device import tuning
@@ -22,9 +25,10 @@ dask.config.set({"distributed.worker.multiprocessing-method": "forkserver", "dis
 get_mp_context().set_forkserver_preload(IMPORTED)
 
 
-def local_cluster(workers: int = WORKERS, *, processes: bool = True) -> LocalCluster:
+@contextmanager
+def local_cluster(workers: int = WORKERS, *, processes: bool = True) -> Iterator[LocalCluster]:
     """A scheduler with workers that are processes, each started again when it dies; or threads."""
-    return LocalCluster(
+    cluster = LocalCluster(
         n_workers=workers,
         threads_per_worker=1,
         processes=processes,
@@ -32,6 +36,18 @@ def local_cluster(workers: int = WORKERS, *, processes: bool = True) -> LocalClu
         protocol="tcp://",
         preload=__name__,
     )
+    with cluster:
+        yield cluster
+        if processes:
+            wait_for_workers(cluster)
+
+
+def wait_for_workers(cluster: LocalCluster) -> None:
+    """Wait until all workers run: Dask cannot close one that is being started again."""
+    deadline = time.monotonic() + 60
+    while not all(nanny.process and nanny.process.status is Status.running for nanny in cluster.workers.values()):
+        assert time.monotonic() < deadline, "a killed worker is not replaced"
+        time.sleep(0.05)
 
 
 def dask_setup(worker: object) -> None:
