@@ -43,11 +43,21 @@ def local_cluster(workers: int = WORKERS, *, processes: bool = True) -> Iterator
 
 
 def wait_for_workers(cluster: LocalCluster) -> None:
-    """Wait until all workers run: Dask cannot close one that is being started again."""
-    deadline = time.monotonic() + 60
-    while not all(nanny.process and nanny.process.status is Status.running for nanny in cluster.workers.values()):
-        assert time.monotonic() < deadline, "a killed worker is not replaced"
+    """Wait until the same workers have run for half a second: Dask cannot close one that is being started again."""
+    begin = since = time.monotonic()
+    before = running(cluster)
+    while time.monotonic() - since < 0.5 or len(before) < len(cluster.workers):
         time.sleep(0.05)
+        now = running(cluster)
+        since = since if now == before else time.monotonic()
+        before = now
+        assert time.monotonic() - begin < 60, "a killed worker is not replaced"
+
+
+def running(cluster: LocalCluster) -> set[int]:
+    """The processes of those workers that run; a nanny may take a moment to notice that its worker is dead."""
+    nannies = cluster.workers.values()
+    return {each.pid for each in nannies if each.process and each.process.status is Status.running}
 
 
 def dask_setup(worker: object) -> None:

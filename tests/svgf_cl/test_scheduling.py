@@ -84,7 +84,7 @@ def test_a_task_that_kills_every_worker_is_given_up() -> None:
         scheduled(cluster.scheduler_address, version) as run,
         pytest.raises(SchedulerError, match="workers die while they work on a task"),
     ):
-        next(run(end_worker, "shared", range(3)))
+        next(run(end_worker, "shared", range(1)))
 
 
 def test_workers_with_another_version_are_refused(cluster: LocalCluster) -> None:
