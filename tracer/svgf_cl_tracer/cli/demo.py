@@ -37,8 +37,8 @@ def demo(
       svgf-cl demo
       svgf-cl demo --frames 8 --size 320x180 --reference-spp 64 -o out/quick
     """
+    require_ssim()  # before `require_tracer` announces that it compiles
     require_tracer()
-    require_ssim()
     from svgf_cl_tracer.demo import SETTINGS, Demo
     from svgf_cl_tracer.references import chunks
 
