@@ -13,7 +13,7 @@ from svgf_cl import Denoiser, Frame, Settings, Tuning
 from svgf_cl.device import tuning
 from svgf_cl.filters.filter import Filter
 
-# A tuning whose kernels PoCL compiles in half the time of those of the default.
+# The tuning of tests of what is around the kernels: PoCL compiles its kernels in half the time of the default's.
 NARROW = Tuning(vector_width=4, work_group=(16, 1))
 
 
@@ -25,11 +25,11 @@ def feed(*frames: Frame, kind: type[Filter] = Settings, **chosen: Any) -> tuple[
 
 @pytest.fixture(scope="module", autouse=True)
 def narrow_vectors() -> Iterator[None]:
-    """Vectors of 4, which PoCL compiles in half the time: for tests of what is around the kernels.
+    """`NARROW` vectors.
 
     tests/kernels and tests/hard test the kernels with the width that a device is given by default.
     """
-    with vector_width(4):
+    with vector_width(NARROW.vector_width):
         yield
 
 

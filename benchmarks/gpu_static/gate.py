@@ -97,16 +97,15 @@ def compile_together(tools: Tools, build: Build, targets: tuple[str, ...]) -> li
         try:
             found = kernels(tools, build, targets, Path(folder))
         except RejectedError as error:
-            expected = "a valid module" if targets == (spirv.NAME,) else "kernels that compile"
-            return [
-                Outcome(
-                    build,
-                    target,
-                    fault=f"{build.source}.cl on {target} ({build.variant}): expected {expected}; {error}",
-                )
-                for target in targets
-            ]
+            return [refused(build, target, error) for target in targets]
     return [Outcome(build, target, found[target]) for target in targets]
+
+
+def refused(build: Build, target: str, error: RejectedError) -> Outcome:
+    """The outcome of a build that a compiler refused."""
+    expected = "a valid module" if target == spirv.NAME else "kernels that compile"
+    place = f"{build.source}.cl on {target} ({build.variant})"
+    return Outcome(build, target, fault=f"{place}: expected {expected}; {error}")
 
 
 def kernels(tools: Tools, build: Build, targets: tuple[str, ...], folder: Path) -> dict[str, dict[str, Compiled]]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import shutil
 import signal
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,6 +22,7 @@ from svgf_cl.io.synthetic import room_frames
 from svgf_cl.job import Chunk, Job
 from svgf_cl.job import run as run_job
 from svgf_cl.shot_denoiser import Method
+from tests.cluster import wait_for_workers
 from tests.command_line import contents, run
 
 SHAPE, FRAMES = (18, 32), 13
@@ -97,10 +97,8 @@ def test_a_chunk_that_a_killed_worker_was_at_is_done_again(shot: Path, cluster: 
     assert {name: file for name, file in contents(tmp_path / "there").items() if not name.startswith(".")} == whole
     again = list(denoise_on_cluster(cluster.scheduler_address, there, chunks))
     assert all(each.kept for each in again)
-    deadline = time.monotonic() + 60
-    while before <= {worker.pid for worker in cluster.workers.values()}:
-        assert time.monotonic() < deadline, "the killed worker is not replaced"
-        time.sleep(0.1)
+    wait_for_workers(cluster)
+    assert not before <= {worker.pid for worker in cluster.workers.values()}
 
 
 def test_what_a_worker_lacks_is_told_with_its_name(shot: Path, cluster: LocalCluster, tmp_path: Path) -> None:
